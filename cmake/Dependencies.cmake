@@ -1,0 +1,13 @@
+# What sheaf stands on, each from its Debian package (scripts/packages.txt).
+find_package(Threads REQUIRED)
+find_package(PkgConfig REQUIRED)
+find_package(TBB REQUIRED)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(assimp REQUIRED)
+find_package(ZLIB REQUIRED)
+find_package(Eigen3 REQUIRED NO_MODULE)
+find_package(meshoptimizer REQUIRED)
+pkg_check_modules(hwy REQUIRED IMPORTED_TARGET libhwy)
+find_path(GLM_INCLUDE_DIR glm/glm.hpp REQUIRED)
+find_path(STB_INCLUDE_DIR stb/stb_image.h REQUIRED)

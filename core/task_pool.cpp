@@ -1,0 +1,41 @@
+#include "core/task_pool.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+
+namespace sheaf {
+
+struct TaskPool::Arena {
+  explicit Arena(int threads) : arena(threads) {}
+  tbb::task_arena arena;
+};
+
+TaskPool::TaskPool(int threads)
+    : thread_count_(threads > 0 ? threads : std::max(1, tbb::this_task_arena::max_concurrency())),
+      arena_(std::make_unique<Arena>(thread_count_)) {}
+
+TaskPool::~TaskPool() = default;
+
+void TaskPool::parallelFor(int count, const std::function<void(int, int)>& body) {
+  const int workers = std::min(count, thread_count_);
+  if (workers <= 1) {
+    for (int piece = 0; piece < count; ++piece) body(piece, 0);
+    return;
+  }
+  std::atomic<int> next{0};
+  arena_->arena.execute([&] {
+    tbb::parallel_for(
+        0, workers,
+        [&](int worker) {
+          for (int piece = next.fetch_add(1, std::memory_order_relaxed); piece < count;
+               piece = next.fetch_add(1, std::memory_order_relaxed))
+            body(piece, worker);
+        },
+        tbb::simple_partitioner{});
+  });
+}
+
+}  // namespace sheaf

@@ -1,0 +1,31 @@
+// core/task_pool: a fixed number of threads (oneTBB) that share out numbered pieces of work.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+namespace sheaf {
+
+/// Owns a oneTBB arena. A pool may be used from one thread at a time.
+class TaskPool {
+ public:
+  /// threads  how many run at once, the caller included; 0 = one per available core
+  explicit TaskPool(int threads = 0);
+  ~TaskPool();
+  TaskPool(const TaskPool&) = delete;
+  TaskPool& operator=(const TaskPool&) = delete;
+
+  int threadCount() const { return thread_count_; }
+
+  /// Calls body(piece, worker) once for each piece in [0, count), and returns when all are done. Pieces are handed out
+  /// in ascending order; each worker in [0, threadCount()) runs on one thread at a time, so scratch memory may be
+  /// indexed by it. The first exception that a body throws is rethrown here.
+  void parallelFor(int count, const std::function<void(int piece, int worker)>& body);
+
+ private:
+  struct Arena;
+  int thread_count_;
+  std::unique_ptr<Arena> arena_;
+};
+
+}  // namespace sheaf

@@ -1,0 +1,30 @@
+// pipeline/counters: how much work a frame was. Beside every time stands what was done in it.
+#pragma once
+
+#include <cstdint>
+
+namespace sheaf::pipeline {
+
+struct Counters {
+  std::uint64_t instances = 0;
+  std::uint64_t patches = 0;              ///< patches of all instances
+  std::uint64_t patches_outside = 0;      ///< rejected by the view volume
+  std::uint64_t patches_back_facing = 0;  ///< rejected by the normal cone
+  std::uint64_t vertices_transformed = 0;
+  std::uint64_t triangles_in = 0;           ///< triangles of all instances
+  std::uint64_t triangles_assembled = 0;    ///< of patches that were not culled
+  std::uint64_t triangles_outside = 0;      ///< all corners beyond one plane
+  std::uint64_t triangles_clipped = 0;      ///< cut by the near or far plane or the guard band
+  std::uint64_t triangles_back_facing = 0;  ///< seen from behind, or without area
+  std::uint64_t triangles_no_sample = 0;    ///< cover no pixel centre
+  std::uint64_t triangles_binned = 0;       ///< pieces of clipped ones count singly
+  std::uint64_t bin_entries = 0;            ///< over all tiles
+  std::uint64_t tiles = 0;
+  std::uint64_t tiles_empty = 0;
+  std::uint64_t pixels_shaded = 0;
+  std::uint64_t pixels_background = 0;
+
+  Counters& operator+=(const Counters& other);
+};
+
+}  // namespace sheaf::pipeline

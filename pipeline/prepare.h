@@ -1,0 +1,55 @@
+// pipeline: from a scene to a frame: prepare once, then every frame cull, transform, clip, set up and bin, rasterize,
+// shade.
+//   In     scenes::Scene, scenes::Camera
+//   Out    Frame: images, counters, times; clip space is -w <= x, y <= w and 0 <= z <= w, z = w at the near plane
+//   Keeps  the same image for any number of threads; nothing is allocated per frame once the renderer is warm
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/math.h"
+#include "core/task_pool.h"
+#include "grouping/patches.h"
+#include "raster/shade.h"
+#include "raster/texture.h"
+#include "scenes/scene.h"
+
+namespace sheaf::pipeline {
+
+/// A mesh cut into patches, its attributes in patch order (structure of arrays). Slots are those of
+/// grouping::PatchSet; padding slots hold copies.
+struct PreparedMesh {
+  std::vector<grouping::Patch> patches;
+  std::array<std::vector<std::uint8_t>, 3> corners;
+  std::vector<std::uint32_t> triangle_source;
+  std::array<std::vector<float>, 3> position;       ///< object space
+  std::vector<std::uint32_t> normal;                ///< raster::packNormal(); empty = flat
+  std::array<std::vector<float>, 2> texcoord;       ///< empty = none
+  std::array<std::vector<std::uint32_t>, 2> color;  ///< raster::packColor(); empty = none
+  Box3 bounds;
+  std::uint64_t vertex_count = 0;  ///< slots that are not padding: border vertices count once per patch
+  std::uint64_t triangle_count = 0;
+
+  std::uint64_t bytes() const;
+};
+
+/// Immutable and shared by all frames and threads. Does not refer to the scene that it was made from.
+struct PreparedScene {
+  std::vector<PreparedMesh> meshes;
+  std::vector<scenes::Instance> instances;
+  std::vector<bool> double_sided;  ///< by material
+  std::vector<raster::ShadeMaterial> materials;
+  std::vector<raster::MipTexture> textures;
+  std::vector<scenes::Light> lights;
+  scenes::Ambient ambient;
+  Box3 bounds_world;
+};
+
+/// Cuts, reorders and packs. The scene's meshes and texture pixels are released as they are taken over, so that mesh
+/// and prepared mesh do not stand in memory together for longer than one mesh.
+PreparedScene prepareScene(scenes::Scene scene, TaskPool& pool);
+
+}  // namespace sheaf::pipeline

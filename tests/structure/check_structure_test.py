@@ -42,7 +42,10 @@ class Findings(unittest.TestCase):
     def test_long_lines(self):
         found = self.findings(check_structure.find_long_lines,
                               {"core/a.h": "x" * 120 + "\n" + "x" * 121 + "\n", "scripts/run": "y" * 121})
-        self.assertEqual(found, ["core/a.h:2: 121 characters, at most 120", "scripts/run:1: 121 characters, at most 120"])
+        self.assertEqual(found, [
+            "core/a.h:2: 121 characters, at most 120",
+            "scripts/run:1: 121 characters, at most 120",
+        ])
 
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "raster/oiio_module.h"
+#include "raster/srgb.h"
 
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
@@ -175,16 +176,10 @@ std::uint8_t codeUnit(float value) {
   return static_cast<std::uint8_t>(std::lround(255.0F * value));
 }
 
-// IEC 61966-2-1. A NaN becomes 0.
-std::uint8_t codeSrgb(float linear) {
-  const float v = linear > 0.0F ? std::min(linear, 1.0F) : 0.0F;
-  return codeUnit(v <= 0.0031308F ? 12.92F * v : 1.055F * std::pow(v, 1.0F / 2.4F) - 0.055F);
-}
-
 Rgba8 codePremultiplied(const float* p) {
   const float alpha = p[3] > 0.0F ? std::min(p[3], 1.0F) : 0.0F;
   const float straight = alpha > 0.0F ? 1.0F / alpha : 0.0F;
-  return {codeSrgb(p[0] * straight), codeSrgb(p[1] * straight), codeSrgb(p[2] * straight), codeUnit(alpha)};
+  return {encodeSrgb(p[0] * straight), encodeSrgb(p[1] * straight), encodeSrgb(p[2] * straight), codeUnit(alpha)};
 }
 
 Image8 readThroughModule(const fs::path& path) {

@@ -1,6 +1,10 @@
+#include <algorithm>
 #include <bit>
 #include <cassert>
+#include <cmath>
 #include <cstring>
+
+#include <hwy/cache_control.h>
 
 #include "raster/shade.h"
 #include "raster/srgb.h"
@@ -148,6 +152,9 @@ std::uint64_t ShadeBlock(const SurfaceJob& job, Block& block, std::uint64_t pend
   const int lane_count = static_cast<int>(hn::Lanes(d));
   const std::uint64_t lane_mask = (std::uint64_t{1} << lane_count) - 1;
   const ShadeTriangle* triangles = job.scene->triangles.data();
+  const VI lane = hn::Iota(di, 0);
+  const VI lane_x = hn::And(lane, hn::Set(di, kRowMask));
+  const VI lane_y = hn::ShiftRight<3>(lane);
   for (int begin = 0; begin < kBlockPixels; begin += lane_count) {
     const std::uint64_t bits = pending >> begin & lane_mask;
     if (bits == 0) continue;
@@ -175,9 +182,8 @@ std::uint64_t ShadeBlock(const SurfaceJob& job, Block& block, std::uint64_t pend
       if (uniform) lanes.uniform = first_id;
     }
 
-    const VI iota = hn::Iota(di, begin);
-    const VI x = hn::Add(hn::And(iota, hn::Set(di, kRowMask)), hn::Set(di, block.x));
-    const VI y = hn::Add(hn::ShiftRight<3>(iota), hn::Set(di, block.y));
+    const VI x = hn::Add(lane_x, hn::Set(di, block.x + (begin & kRowMask)));
+    const VI y = hn::Add(lane_y, hn::Set(di, block.y + begin / kBlockSize));
     VF b0, b1, b2;
     Barycentrics(lanes, x, y, b0, b1, b2);
 
@@ -245,6 +251,20 @@ std::uint64_t PixelsCovered(const std::uint32_t* triangle) {
     bits |= BitsOfMask(hn::RebindMask(DF(), covered)) << begin;
   }
   return bits;
+}
+
+/// Asks for the records of a block's triangles, which come from memory in no order.
+void PrefetchTriangles(const ShadeTriangle* triangles, const std::uint32_t* ids) {
+  constexpr int kLast = kBlockPixels - 1;
+  if (ids[0] == ids[kBlockSize - 1] && ids[0] == ids[kLast]) return;  // most likely one triangle
+  const DU du;
+  const VU first = hn::Set(du, 0);
+  alignas(64) std::uint32_t safe[kMaxLanes];
+  for (std::size_t begin = 0; begin < kBlockPixels; begin += hn::Lanes(du)) {
+    const VU id = hn::Load(du, ids + begin);
+    hn::Store(hn::IfThenElse(hn::Eq(id, hn::Set(du, kNoTriangle)), first, id), du, safe);
+    for (std::size_t i = 0; i < hn::Lanes(du); ++i) hwy::Prefetch(triangles + safe[i]);
+  }
 }
 
 /// Background as both images hold it.
@@ -337,6 +357,7 @@ ShadeCounts ShadeTile(const ShadeScene& scene, const TileVisibility& tile, int x
       FillBlock(block, background, target);
       continue;
     }
+    if (index + 1 < kBlocksPerTile) PrefetchTriangles(scene.triangles.data(), block.triangle + kBlockPixels);
     for (std::uint64_t pending = covered; pending != 0; pending = job.kernel(job, block, pending, lanes)) {
       const std::uint32_t first_id = block.triangle[std::countr_zero(pending)];
       const std::uint32_t surface_id = scene.triangles[first_id].surface;

@@ -1,4 +1,4 @@
-// Small meshes that several tests of the module share.
+// Small meshes that several tests share.
 #pragma once
 
 #include <cmath>

@@ -106,14 +106,19 @@ void chooseMetric(const mesh::Mesh& mesh, Metric metric, Limit limit, VertexGrou
   out.warnings.push_back("the quadric metric needs faces and there are none: grouped by distance instead");
 }
 
+float Placement::lineParameter(const VertexGroup& group, std::uint32_t vertex, const DVec3& from_base) const {
+  const DVec3 along(group.axis_s);
+  // A vertex that cannot reach anywhere is a member only if it lies on the line.
+  const bool can_move = !ellipsoids_.empty() && ellipsoids_[vertex].determinant() > 0.0;
+  const Sym3 a = can_move ? inverse(ellipsoids_[vertex]) : Sym3::scaledIdentity(1.0);
+  const double t = placeOnLine(a, -from_base, along);
+  return static_cast<float>(segment_only_ ? std::clamp(t, 0.0, 1.0) : t);
+}
+
 Placement::Parameters Placement::parametersOf(const VertexGroup& group, const PlaneFrame* frame, std::uint32_t vertex,
                                               const Vec3& position) const {
   const DVec3 from_base = DVec3(position) - DVec3(group.base);
-  const DVec3 axis_s(group.axis_s);
-  if (group.kind == GroupKind::kLine) {
-    if (ellipsoids_.empty()) return {float(glm::dot(from_base, axis_s) / glm::dot(axis_s, axis_s)), 0.0F};
-    return {float(placeOnLine(inverse(ellipsoids_[vertex]), -from_base, axis_s)), 0.0F};
-  }
+  if (group.kind == GroupKind::kLine) return {lineParameter(group, vertex, from_base), 0.0F};
   DVec3 target = from_base;  // along the normal it makes no difference to s and t
   if (!ellipsoids_.empty()) {
     const DVec3 normal(frame->normal);
@@ -121,7 +126,8 @@ Placement::Parameters Placement::parametersOf(const VertexGroup& group, const Pl
     // A vertex that cannot reach anywhere is a member only if it lies in the plane.
     if (glm::dot(normal, reach) > 0.0) target += placeOnPlane(normal, reach, -glm::dot(normal, from_base));
   }
-  return {float(glm::dot(target, axis_s)), float(glm::dot(target, DVec3(group.axis_t)))};
+  return {static_cast<float>(glm::dot(target, DVec3(group.axis_s))),
+          static_cast<float>(glm::dot(target, DVec3(group.axis_t)))};
 }
 
 void assembleGroups(std::span<const Vec3> positions, std::span<const std::uint32_t> in_use, Findings findings,

@@ -38,8 +38,10 @@ struct Findings {
 /// Where a vertex goes on a line or plane: the nearest point, or the one of least quadric error.
 class Placement {
  public:
-  /// ellipsoids  #V, or empty for the distance metric; kept by reference
-  explicit Placement(std::span<const Sym3> ellipsoids) : ellipsoids_(ellipsoids) {}
+  /// ellipsoids    #V, or empty for the distance metric; kept by reference
+  /// segment_only  round-off must not take t out of [0, 1]
+  explicit Placement(std::span<const Sym3> ellipsoids, bool segment_only = false)
+      : ellipsoids_(ellipsoids), segment_only_(segment_only) {}
 
   struct Parameters {
     float s, t;
@@ -48,7 +50,10 @@ class Placement {
                           const Vec3& position) const;
 
  private:
+  float lineParameter(const VertexGroup& group, std::uint32_t vertex, const DVec3& from_base) const;
+
   std::span<const Sym3> ellipsoids_;
+  bool segment_only_;
 };
 
 /// Fills groups, members, parameters, states, owners and positions of `out`, whose `planes` and `kind` are set.

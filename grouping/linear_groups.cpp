@@ -164,7 +164,7 @@ VertexGroups groupLinear(const mesh::Mesh& mesh, const LinearOptions& options) {
   const LineTest test(mesh.positions, in_use, eps, ellipsoids, options.segment_only);
   LineSearch search(test, in_use, options, mesh.vertexCount());
   out.interrupted = !search.run();
-  assembleGroups(mesh.positions, in_use, search.finish(), Placement(ellipsoids), out);
+  assembleGroups(mesh.positions, in_use, search.finish(), Placement(ellipsoids, options.segment_only), out);
   finishGroups(mesh, options.restore_flipped, start_ns, out);
   return out;
 }

@@ -170,7 +170,8 @@ VertexGroups naiveGroupLinear(const mesh::Mesh& mesh, const LinearOptions& optio
   std::vector<Sym3> ellipsoids;
   if (out.metric == Metric::kQuadric) ellipsoids = vertexEllipsoids(mesh, eps, out.limit);
   const LineTest test(mesh.positions, in_use, eps, ellipsoids, options.segment_only);
-  assembleGroups(mesh.positions, in_use, searchLines(test, in_use, mesh.vertexCount()), Placement(ellipsoids), out);
+  assembleGroups(mesh.positions, in_use, searchLines(test, in_use, mesh.vertexCount()),
+                 Placement(ellipsoids, options.segment_only), out);
   finishGroups(mesh, options.restore_flipped, start_ns, out);
   return out;
 }

@@ -88,7 +88,8 @@ Image8 decodeImage(std::string_view bytes, std::string_view name) {
   if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0)
     refuse(name, fmt::format("image cannot be decoded: {}", stbi_failure_reason()));
   if (width > kLargestImageSide || height > kLargestImageSide)
-    refuse(name, fmt::format("image of {}x{} pixels is too large (at most {} a side)", width, height, kLargestImageSide));
+    refuse(name,
+           fmt::format("image of {}x{} pixels is too large (at most {} a side)", width, height, kLargestImageSide));
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(data, size, &width, &height, &channels, 4), &stbi_image_free);
   if (!pixels) refuse(name, fmt::format("image cannot be decoded: {}", stbi_failure_reason()));

@@ -4,8 +4,6 @@
 #include <cstdlib>
 #include <new>
 
-#include "raster/edges.h"
-
 namespace sheaf::raster {
 
 void ShadeTriangleArena::Free::operator()(ShadeTriangle* p) const {
@@ -67,26 +65,24 @@ void Binner::addStraddling(const BinEntry& entry) {
   }
 }
 
-void Binner::addLarge(const LargeTriangle& triangle, int x_min, int y_min, int x_max, int y_max) {
+void Binner::addLarge(const LargeTriangle& triangle) {
   BinEntry entry{};
   entry.index = static_cast<std::uint32_t>(large_.size());
   large_.push_back(triangle);
-  const int tx0 = x_min / kTileSize;
-  const int tx1 = x_max / kTileSize;
-  const int ty0 = y_min / kTileSize;
-  const int ty1 = y_max / kTileSize;
+  const int tx0 = triangle.ref_x / kTileSize;
+  const int tx1 = triangle.last_x / kTileSize;
+  const int ty0 = triangle.ref_y / kTileSize;
+  const int ty1 = triangle.last_y / kTileSize;
   if (tx0 == tx1 && ty0 == ty1) {
     append(ty0 * tiles_x_ + tx0) = entry;
     return;
   }
-  const PixelEdge edges[3] = {pixelEdge(triangle.x_fx, triangle.y_fx, 0), pixelEdge(triangle.x_fx, triangle.y_fx, 1),
-                              pixelEdge(triangle.x_fx, triangle.y_fx, 2)};
-  const std::int64_t rise[3] = {edges[0].riseOver(kTileSize), edges[1].riseOver(kTileSize),
-                                edges[2].riseOver(kTileSize)};
   for (int ty = ty0; ty <= ty1; ++ty)
     for (int tx = tx0; tx <= tx1; ++tx) {
+      const int x = tx * kTileSize - triangle.ref_x;
+      const int y = ty * kTileSize - triangle.ref_y;
       bool outside = false;
-      for (int i = 0; i < 3; ++i) outside |= edges[i].at(tx * kTileSize, ty * kTileSize) + rise[i] < 0;
+      for (const PixelEdge& edge : triangle.edges) outside |= edge.at(x, y) + edge.riseOver(kTileSize) < 0;
       if (!outside) append(ty * tiles_x_ + tx) = entry;
     }
 }

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "raster/edges.h"
 #include "raster/screen.h"
 
 namespace sheaf::raster {
@@ -29,11 +30,11 @@ struct BinEntry {
 };
 static_assert(sizeof(BinEntry) == 32);
 
-/// A triangle that needs its edges. Corners are ordered so that its area is positive: (v1 - v0) x (v2 - v0) > 0.
+/// A triangle that needs its edges, which are relative to the reference pixel.
 struct LargeTriangle {
-  std::int32_t x_fx[3];
-  std::int32_t y_fx[3];
-  std::int32_t ref_x, ref_y;  ///< reference pixel of `depth`
+  PixelEdge edges[3];
+  std::int16_t ref_x, ref_y;    ///< reference pixel: top left of the pixels that it may cover
+  std::int16_t last_x, last_y;  ///< bottom right of them, included; within the target
   DepthPlane depth;
   std::uint32_t shade;  ///< ShadeTriangle
 };
@@ -103,9 +104,8 @@ class Binner {
     }
   }
 
-  /// Adds the triangle to every tile that it may touch of those over pixels [x_min, x_max] x [y_min, y_max], which lie
-  /// within the target.
-  void addLarge(const LargeTriangle& triangle, int x_min, int y_min, int x_max, int y_max);
+  /// Adds the triangle to every tile that it may touch.
+  void addLarge(const LargeTriangle& triangle);
 
   const Chunk* tile(int index) const { return heads_[static_cast<std::size_t>(index)]; }
   const LargeTriangle* largeTriangles() const { return large_.data(); }

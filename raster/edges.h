@@ -37,15 +37,16 @@ struct PixelEdge {
 // An edge that crosses a tile is, anywhere in the tile, below its change over the tile: |at| < 64 * (|a| + |b|) < 2^31.
 static_assert(2 * kMaxDelta * kTileSize <= (1LL << 30));
 
-inline PixelEdge pixelEdge(const std::int32_t (&x_fx)[3], const std::int32_t (&y_fx)[3], int i) {
+/// Edge i of a triangle of positive area, relative to the pixel (ref_x, ref_y).
+inline PixelEdge pixelEdge(const std::int32_t (&x_fx)[3], const std::int32_t (&y_fx)[3], int i, int ref_x, int ref_y) {
   const int j = i == 2 ? 0 : i + 1;
   const int k = i == 0 ? 2 : i - 1;
   const std::int32_t a = y_fx[j] - y_fx[k];
   const std::int32_t b = x_fx[k] - x_fx[j];
   const bool top_left = a > 0 || (a == 0 && b > 0);
-  const std::int64_t at_origin =
-      std::int64_t{a} * (kSubpixels / 2 - x_fx[j]) + std::int64_t{b} * (kSubpixels / 2 - y_fx[j]);
-  return {a, b, (at_origin - (top_left ? 0 : 1)) >> kSubpixelBits};
+  const std::int64_t at_ref = std::int64_t{a} * (ref_x * kSubpixels + kSubpixels / 2 - x_fx[j]) +
+                              std::int64_t{b} * (ref_y * kSubpixels + kSubpixels / 2 - y_fx[j]);
+  return {a, b, (at_ref - (top_left ? 0 : 1)) >> kSubpixelBits};
 }
 
 }  // namespace sheaf::raster

@@ -47,13 +47,11 @@ DepthPlane depthPlane(const EdgeAtReference& e1, const EdgeAtReference& e2, floa
 }
 
 // Bit 4 * row + column: which of the 4x4 pixels at the box's corner are covered, within the box.
-std::uint16_t smallMask(const std::int32_t (&x)[3], const std::int32_t (&y)[3], const PixelBox& box) {
-  const PixelEdge edges[3] = {pixelEdge(x, y, 0), pixelEdge(x, y, 1), pixelEdge(x, y, 2)};
+std::uint16_t smallMask(const PixelEdge (&edges)[3], const PixelBox& box) {
   unsigned mask = 0;
-  for (int py = box.y_min; py <= box.y_max; ++py)
-    for (int px = box.x_min; px <= box.x_max; ++px)
-      if (edges[0].at(px, py) >= 0 && edges[1].at(px, py) >= 0 && edges[2].at(px, py) >= 0)
-        mask |= 1U << (4 * (py - box.y_min) + px - box.x_min);
+  for (int y = 0; y <= box.y_max - box.y_min; ++y)
+    for (int x = 0; x <= box.x_max - box.x_min; ++x)
+      if (edges[0].at(x, y) >= 0 && edges[1].at(x, y) >= 0 && edges[2].at(x, y) >= 0) mask |= 1U << (4 * y + x);
   return static_cast<std::uint16_t>(mask);
 }
 
@@ -61,17 +59,25 @@ std::uint16_t smallMask(const std::int32_t (&x)[3], const std::int32_t (&y)[3], 
 template <typename ShadeIndex>
 bool binTriangle(const std::int32_t (&x)[3], const std::int32_t (&y)[3], const float (&z)[3], std::int64_t area,
                  const PixelBox& box, Binner& binner, const ShadeIndex& shade) {
+  const PixelEdge edges[3] = {pixelEdge(x, y, 0, box.x_min, box.y_min), pixelEdge(x, y, 1, box.x_min, box.y_min),
+                              pixelEdge(x, y, 2, box.x_min, box.y_min)};
   const bool small = isSmall(box);
-  const std::uint16_t mask = small ? smallMask(x, y, box) : std::uint16_t{0};
+  const std::uint16_t mask = small ? smallMask(edges, box) : std::uint16_t{0};
   if (small && mask == 0) return false;
   const DepthPlane plane =
       depthPlane(edgeAtReference(x, y, 1, box), edgeAtReference(x, y, 2, box), 1.0F / static_cast<float>(area), z);
+  const auto ref_x = static_cast<std::int16_t>(box.x_min);
+  const auto ref_y = static_cast<std::int16_t>(box.y_min);
   if (small) {
-    binner.addSmall(
-        {static_cast<std::int16_t>(box.x_min), static_cast<std::int16_t>(box.y_min), mask, 0, plane, shade()});
+    binner.addSmall({ref_x, ref_y, mask, 0, plane, shade()});
   } else {
-    binner.addLarge({{x[0], x[1], x[2]}, {y[0], y[1], y[2]}, box.x_min, box.y_min, plane, shade()}, box.x_min,
-                    box.y_min, box.x_max, box.y_max);
+    binner.addLarge({{edges[0], edges[1], edges[2]},
+                     ref_x,
+                     ref_y,
+                     static_cast<std::int16_t>(box.x_max),
+                     static_cast<std::int16_t>(box.y_max),
+                     plane,
+                     shade()});
   }
   return true;
 }

@@ -45,7 +45,7 @@ VI TopLeftBias(const EdgeLanes& edge) {
 }
 
 // Coverage of the 4x4 pixels at the reference pixel, bit 4 * row + column.
-VI CoverSmall(const EdgeLanes& e0, const EdgeLanes& e1, const EdgeLanes& e2) {
+HWY_INLINE VI CoverSmall(const EdgeLanes& e0, const EdgeLanes& e1, const EdgeLanes& e2) {
   VI row0 = hn::Add(e0.e, TopLeftBias(e0));
   VI row1 = hn::Add(e1.e, TopLeftBias(e1));
   VI row2 = hn::Add(e2.e, TopLeftBias(e2));
@@ -79,10 +79,16 @@ struct alignas(64) LaneOutput {
   float u0[3][kMaxLanes], ux[3][kMaxLanes], uy[3][kMaxLanes];
   float z[kMaxLanes], dzdx[kMaxLanes], dzdy[kMaxLanes], lo[kMaxLanes], hi[kMaxLanes];
   std::int32_t vertex[3][kMaxLanes];
-  std::int32_t x[3][kMaxLanes], y[3][kMaxLanes];
+  std::int32_t a[3][kMaxLanes], b[3][kMaxLanes], c[3][kMaxLanes];  // PixelEdge
   std::int32_t x_min[kMaxLanes], y_min[kMaxLanes], x_max[kMaxLanes], y_max[kMaxLanes];
   std::int32_t mask[kMaxLanes];
 };
+
+void StorePixelEdge(const EdgeLanes& edge, int i, LaneOutput& out) {
+  hn::Store(edge.a, di, out.a[i]);
+  hn::Store(edge.b, di, out.b[i]);
+  hn::Store(hn::ShiftRight<kSubpixelBits>(hn::Add(edge.e, TopLeftBias(edge))), di, out.c[i]);
+}
 
 void EmitLane(const LaneOutput& out, int lane, bool small, bool back, std::uint32_t t, const PatchTriangles& triangles,
               Binner& binner) {
@@ -103,13 +109,15 @@ void EmitLane(const LaneOutput& out, int lane, bool small, bool back, std::uint3
   if (small) {
     binner.addSmall({shade.ref_x, shade.ref_y, static_cast<std::uint16_t>(out.mask[lane]), 0, plane, index});
   } else {
-    binner.addLarge({{out.x[0][lane], out.x[1][lane], out.x[2][lane]},
-                     {out.y[0][lane], out.y[1][lane], out.y[2][lane]},
-                     out.x_min[lane],
-                     out.y_min[lane],
-                     plane,
-                     index},
-                    out.x_min[lane], out.y_min[lane], out.x_max[lane], out.y_max[lane]);
+    LargeTriangle large;
+    for (int i = 0; i < 3; ++i) large.edges[i] = {out.a[i][lane], out.b[i][lane], out.c[i][lane]};
+    large.ref_x = shade.ref_x;
+    large.ref_y = shade.ref_y;
+    large.last_x = static_cast<std::int16_t>(out.x_max[lane]);
+    large.last_y = static_cast<std::int16_t>(out.y_max[lane]);
+    large.depth = plane;
+    large.shade = index;
+    binner.addLarge(large);
   }
 }
 
@@ -249,12 +257,9 @@ void SetupTriangles(const ScreenVertices& vertices, const PatchTriangles& triang
     hn::Store(x_min, di, out.x_min);
     hn::Store(y_min, di, out.y_min);
     if ((alive & ~small) != 0) {
-      hn::Store(x0, di, out.x[0]);
-      hn::Store(x1, di, out.x[1]);
-      hn::Store(x2, di, out.x[2]);
-      hn::Store(y0, di, out.y[0]);
-      hn::Store(y1, di, out.y[1]);
-      hn::Store(y2, di, out.y[2]);
+      StorePixelEdge(e0, 0, out);
+      StorePixelEdge(e1, 1, out);
+      StorePixelEdge(e2, 2, out);
       hn::Store(x_max, di, out.x_max);
       hn::Store(y_max, di, out.y_max);
     }

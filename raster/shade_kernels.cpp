@@ -1,6 +1,10 @@
+#include <algorithm>
 #include <bit>
 #include <cassert>
+#include <cmath>
 #include <cstring>
+
+#include <hwy/cache_control.h>
 
 #include "raster/shade.h"
 #include "raster/srgb.h"
@@ -28,11 +32,13 @@ struct Block {
   const std::uint32_t* triangle;  ///< kBlockPixels
   std::int32_t x;                 ///< of the top left pixel in the frame
   std::int32_t y;
+  std::uint64_t covered;  ///< pixels to shade, bits in the order of tileIndex()
   BlockColors colors;
 };
 
 struct SurfaceJob;
-using BlockKernel = std::uint64_t (*)(const SurfaceJob& job, Block& block, std::uint64_t pending, TriangleLanes& lanes);
+using BlockKernel = std::uint64_t (*)(const SurfaceJob& job, Block& block, std::uint64_t pending,
+                                      BlockTriangles& fetched);
 
 /// What is the same for all pixels of a surface.
 struct SurfaceJob {
@@ -72,10 +78,8 @@ HWY_INLINE VF Blend(VF b0, VF b1, VF b2, VF a0, VF a1, VF a2) {
 
 /// Interpolated object-space normal of any length.
 HWY_INLINE void SmoothNormal(const TriangleLanes& lanes, VF b0, VF b1, VF b2, VF& nx, VF& ny, VF& nz) {
-  const DF d;
   const auto component = [&](int axis) {
-    return Blend(b0, b1, b2, hn::Load(d, lanes.normal[axis]), hn::Load(d, lanes.normal[3 + axis]),
-                 hn::Load(d, lanes.normal[6 + axis]));
+    return Blend(b0, b1, b2, lanes.normals(0, axis), lanes.normals(1, axis), lanes.normals(2, axis));
   };
   nx = component(0);
   ny = component(1);
@@ -85,9 +89,9 @@ HWY_INLINE void SmoothNormal(const TriangleLanes& lanes, VF b0, VF b1, VF b2, VF
 /// The triangle's own object-space normal, of any length.
 HWY_INLINE void FlatNormal(const Surface& surface, const TriangleLanes& lanes, VF& nx, VF& ny, VF& nz) {
   const DF d;
-  const VI v0 = hn::BitCast(DI(), lanes.words(kVertex));
-  const VI v1 = hn::BitCast(DI(), lanes.words(kVertex + 1));
-  const VI v2 = hn::BitCast(DI(), lanes.words(kVertex + 2));
+  const VI v0 = lanes.vertices(0);
+  const VI v1 = lanes.vertices(1);
+  const VI v2 = lanes.vertices(2);
   const auto edge = [&](int axis, VI to) {
     const float* position = surface.position_object[static_cast<std::size_t>(axis)];
     return hn::Sub(hn::GatherIndex(d, position, to), hn::GatherIndex(d, position, v0));
@@ -138,46 +142,48 @@ HWY_INLINE void Illuminate(const SurfaceJob& job, VF nx, VF ny, VF nz, VF& r, VF
   b = hn::Mul(b, light_b);
 }
 
+/// Finite, not negative, whatever came in.
+HWY_INLINE VF Presentable(VF color) {
+  return Clamped(color, 0.0F, hwy::HighestValue<float>());
+}
+
+HWY_INLINE void StoreColors(std::uint64_t lanes, VF r, VF g, VF b, Block& block, std::size_t begin) {
+  const DF d;
+  const std::uint64_t lane_mask = (std::uint64_t{1} << hn::Lanes(d)) - 1;
+  float* to_r = block.colors.r + begin;
+  float* to_g = block.colors.g + begin;
+  float* to_b = block.colors.b + begin;
+  // Not for the sake of the other lanes only: what a masked store wrote cannot be forwarded to the load that encodes.
+  if (lanes == (block.covered >> begin & lane_mask)) {
+    hn::Store(Presentable(r), d, to_r);
+    hn::Store(Presentable(g), d, to_g);
+    hn::Store(Presentable(b), d, to_b);
+    return;
+  }
+  const MF mask = MaskOfBits(lanes);
+  hn::BlendedStore(Presentable(r), mask, d, to_r);
+  hn::BlendedStore(Presentable(g), mask, d, to_g);
+  hn::BlendedStore(Presentable(b), mask, d, to_b);
+}
+
 /// Shades those of the pending pixels (bits in tileIndex() order) that show the job's surface; returns the rest.
 template <ShadeModel kModel>
-std::uint64_t ShadeBlock(const SurfaceJob& job, Block& block, std::uint64_t pending, TriangleLanes& lanes) {
+std::uint64_t ShadeBlock(const SurfaceJob& job, Block& block, std::uint64_t pending, BlockTriangles& fetched) {
   const DF d;
-  const DU du;
   const DI di;
-  constexpr int kRowMask = kBlockSize - 1;
-  const int lane_count = static_cast<int>(hn::Lanes(d));
-  const std::uint64_t lane_mask = (std::uint64_t{1} << lane_count) - 1;
-  const ShadeTriangle* triangles = job.scene->triangles.data();
-  for (int begin = 0; begin < kBlockPixels; begin += lane_count) {
-    const std::uint64_t bits = pending >> begin & lane_mask;
-    if (bits == 0) continue;
+  const std::uint64_t mine =
+      FetchTriangles(job.scene->triangles.data(), block.triangle, job.surface_id, pending, fetched);
+  if constexpr (kModel == ShadeModel::kSmooth) FetchNormals(job.surface->normal, fetched);
 
-    // Lanes without a pixel of their own follow the first that has one.
-    const std::uint32_t first_id = block.triangle[begin + std::countr_zero(bits)];
-    const MF active = MaskOfBits(bits);
-    const VU first_ids = hn::Set(du, first_id);
-    const VU ids = hn::IfThenElse(hn::RebindMask(du, active), hn::Load(du, block.triangle + begin), first_ids);
-    const bool uniform = hn::AllTrue(du, hn::Eq(ids, first_ids));
-    if (!uniform || lanes.uniform != first_id) {
-      lanes.uniform = kNoTriangle;
-      if (uniform)
-        FetchOneRecord(triangles[first_id], lanes);
-      else
-        FetchRecords(triangles, ids, lanes);
-    }
-    const auto of_surface = hn::Eq(lanes.words(kSurface), hn::Set(du, job.surface_id));
-    const std::uint64_t mine_bits = bits & BitsOfMask(hn::RebindMask(d, of_surface));
-    if (mine_bits == 0) continue;
-    if (mine_bits != bits) HideOtherVertices(lanes, mine_bits);
-    const MF mine = MaskOfBits(mine_bits);
-    if (lanes.uniform == kNoTriangle) {
-      if constexpr (kModel == ShadeModel::kSmooth) FetchNormals(job.surface->normal, lanes);
-      if (uniform) lanes.uniform = first_id;
-    }
-
-    const VI iota = hn::Iota(di, begin);
-    const VI x = hn::Add(hn::And(iota, hn::Set(di, kRowMask)), hn::Set(di, block.x));
-    const VI y = hn::Add(hn::ShiftRight<3>(iota), hn::Set(di, block.y));
+  constexpr std::size_t kRowMask = kBlockSize - 1;
+  const VI lane = hn::Iota(di, 0);
+  const VI lane_x = hn::Add(hn::And(lane, hn::Set(di, kRowMask)), hn::Set(di, block.x));
+  const VI lane_y = hn::Add(hn::ShiftRight<3>(lane), hn::Set(di, block.y));
+  for (std::size_t begin = 0; begin < kBlockPixels; begin += hn::Lanes(d)) {
+    if (fetched.lanes[begin] == 0) continue;
+    const TriangleLanes lanes{fetched, begin};
+    const VI x = hn::Add(lane_x, hn::Set(di, static_cast<std::int32_t>(begin & kRowMask)));
+    const VI y = hn::Add(lane_y, hn::Set(di, static_cast<std::int32_t>(begin / kBlockSize)));
     VF b0, b1, b2;
     Barycentrics(lanes, x, y, b0, b1, b2);
 
@@ -193,13 +199,9 @@ std::uint64_t ShadeBlock(const SurfaceJob& job, Block& block, std::uint64_t pend
       ToWorldNormal(job, lanes, nx, ny, nz);
       Illuminate(job, nx, ny, nz, r, g, b);
     }
-    // Finite whatever came in.
-    hn::BlendedStore(Clamped(r, 0.0F, hwy::HighestValue<float>()), mine, d, block.colors.r + begin);
-    hn::BlendedStore(Clamped(g, 0.0F, hwy::HighestValue<float>()), mine, d, block.colors.g + begin);
-    hn::BlendedStore(Clamped(b, 0.0F, hwy::HighestValue<float>()), mine, d, block.colors.b + begin);
-    pending &= ~(mine_bits << begin);
+    StoreColors(fetched.lanes[begin], r, g, b, block, begin);
   }
-  return pending;
+  return pending & ~mine;
 }
 
 BlockKernel SelectKernel(const Surface& surface, const ShadeMaterial& material) {
@@ -247,6 +249,20 @@ std::uint64_t PixelsCovered(const std::uint32_t* triangle) {
   return bits;
 }
 
+/// Asks for the records of a block's triangles, which come from memory in no order.
+void PrefetchTriangles(const ShadeTriangle* triangles, const std::uint32_t* ids) {
+  constexpr int kLast = kBlockPixels - 1;
+  if (ids[0] == ids[kBlockSize - 1] && ids[0] == ids[kLast]) return;  // most likely one triangle
+  const DU du;
+  const VU first = hn::Set(du, 0);
+  alignas(64) std::uint32_t safe[kMaxLanes];
+  for (std::size_t begin = 0; begin < kBlockPixels; begin += hn::Lanes(du)) {
+    const VU id = hn::Load(du, ids + begin);
+    hn::Store(hn::IfThenElse(hn::Eq(id, hn::Set(du, kNoTriangle)), first, id), du, safe);
+    for (std::size_t i = 0; i < hn::Lanes(du); ++i) hwy::Prefetch(triangles + safe[i]);
+  }
+}
+
 /// Background as both images hold it.
 struct Background {
   std::uint32_t srgb;
@@ -260,7 +276,7 @@ Background MakeBackground(const Vec4& straight) {
   return {std::bit_cast<std::uint32_t>(code), Vec4(Vec3(straight) * alpha, alpha)};
 }
 
-void WriteSrgb(const Block& block, std::uint64_t covered, const Background& background, Image8& image) {
+void WriteSrgb(const Block& block, const Background& background, Image8& image) {
   const DU du;
   alignas(64) std::uint32_t codes[kBlockPixels];
   const std::uint32_t* table = srgbEncodeTable().data();
@@ -268,7 +284,7 @@ void WriteSrgb(const Block& block, std::uint64_t covered, const Background& back
     const DF d;
     const VU code = EncodeOpaque(table, hn::Load(d, block.colors.r + begin), hn::Load(d, block.colors.g + begin),
                                  hn::Load(d, block.colors.b + begin));
-    const auto mask = hn::RebindMask(du, MaskOfBits(covered >> begin));
+    const auto mask = hn::RebindMask(du, MaskOfBits(block.covered >> begin));
     hn::Store(hn::IfThenElse(mask, code, hn::Set(du, background.srgb)), du, codes + begin);
   }
   const auto width = static_cast<std::size_t>(std::min(kBlockSize, image.width() - block.x));
@@ -283,11 +299,11 @@ void WriteSrgb(const Block& block, std::uint64_t covered, const Background& back
   }
 }
 
-void WriteLinear(const Block& block, std::uint64_t covered, const Background& background, ImageF4& image) {
+void WriteLinear(const Block& block, const Background& background, ImageF4& image) {
   const DF d;
   alignas(64) float values[kBlockPixels * 4];
   for (std::size_t begin = 0; begin < kBlockPixels; begin += hn::Lanes(d)) {
-    const MF mask = MaskOfBits(covered >> begin);
+    const MF mask = MaskOfBits(block.covered >> begin);
     const auto pick = [&](const float* color, float behind) {
       return hn::IfThenElse(mask, hn::Load(d, color + begin), Constant(behind));
     };
@@ -322,7 +338,8 @@ ShadeCounts ShadeTile(const ShadeScene& scene, const TileVisibility& tile, int x
   const Background background = MakeBackground(scene.background);
   ShadeCounts counts;
   SurfaceJob job{};
-  TriangleLanes lanes;
+  BlockTriangles fetched;
+  fetched.forget();
   Block block{};
   for (int index = 0; index < kBlocksPerTile; ++index) {
     block.x = x0 + index % kBlocksPerTileSide * kBlockSize;
@@ -331,22 +348,24 @@ ShadeCounts ShadeTile(const ShadeScene& scene, const TileVisibility& tile, int x
     if (block.x >= width || block.y >= height) continue;
     const std::uint64_t inside = PixelsInside(width - block.x, height - block.y);
     const std::uint64_t covered = inside & PixelsCovered(block.triangle);
+    block.covered = covered;
     counts.pixels_shaded += static_cast<std::uint64_t>(std::popcount(covered));
     counts.pixels_background += static_cast<std::uint64_t>(std::popcount(inside & ~covered));
     if (covered == 0) {
       FillBlock(block, background, target);
       continue;
     }
-    for (std::uint64_t pending = covered; pending != 0; pending = job.kernel(job, block, pending, lanes)) {
+    if (index + 1 < kBlocksPerTile) PrefetchTriangles(scene.triangles.data(), block.triangle + kBlockPixels);
+    for (std::uint64_t pending = covered; pending != 0; pending = job.kernel(job, block, pending, fetched)) {
       const std::uint32_t first_id = block.triangle[std::countr_zero(pending)];
       const std::uint32_t surface_id = scene.triangles[first_id].surface;
       if (job.scene == nullptr || job.surface_id != surface_id) {
         job = MakeSurfaceJob(scene, surface_id);
-        lanes.uniform = kNoTriangle;
+        fetched.forget();
       }
     }
-    if (target.srgb != nullptr) WriteSrgb(block, covered, background, *target.srgb);
-    if (target.linear != nullptr) WriteLinear(block, covered, background, *target.linear);
+    if (target.srgb != nullptr) WriteSrgb(block, background, *target.srgb);
+    if (target.linear != nullptr) WriteLinear(block, background, *target.linear);
   }
   return counts;
 }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <bit>
+#include <type_traits>
 
 #include "raster/edges.h"
 #include "raster/tile.h"
@@ -76,9 +77,8 @@ struct TileEdges {
 
 // False: the triangle misses the tile.
 bool EdgesInTile(const LargeTriangle& triangle, int x0, int y0, TileEdges& edges) {
-  for (int i = 0; i < 3; ++i) {
-    const PixelEdge edge = pixelEdge(triangle.x_fx, triangle.y_fx, i);
-    const std::int64_t at_tile = edge.at(x0, y0);
+  for (const PixelEdge& edge : triangle.edges) {
+    const std::int64_t at_tile = edge.at(x0 - triangle.ref_x, y0 - triangle.ref_y);
     if (at_tile + edge.riseOver(kTileSize) < 0) return false;
     if (at_tile + edge.fallOver(kTileSize) >= 0) continue;  // the whole tile is inside this edge
     edges.a[edges.count] = edge.a;
@@ -89,18 +89,44 @@ bool EdgesInTile(const LargeTriangle& triangle, int x0, int y0, TileEdges& edges
   return true;
 }
 
-// One bit per block, in memory order: which blocks some edge leaves wholly out, and which all edges leave wholly in.
+// Pixels of the tile that the triangle may cover, both ends included.
+struct TileBox {
+  int x_min, y_min, x_max, y_max;
+};
+
+TileBox BoxInTile(const LargeTriangle& triangle, int x0, int y0) {
+  return {std::max(triangle.ref_x - x0, 0), std::max(triangle.ref_y - y0, 0),
+          std::min(triangle.last_x - x0, kTileSize - 1), std::min(triangle.last_y - y0, kTileSize - 1)};
+}
+
+// One bit per block, in memory order: the blocks under the box.
+std::uint64_t BlocksUnder(const TileBox& box) {
+  static_assert(kBlocksPerTileSide == 8);
+  const unsigned columns = (0xFFU << (box.x_min / kBlockSize)) & (0xFFU >> (7 - box.x_max / kBlockSize));
+  const int first_row = box.y_min / kBlockSize;
+  const int last_row = box.y_max / kBlockSize;
+  const std::uint64_t rows = (~std::uint64_t{0} << (8 * first_row)) & (~std::uint64_t{0} >> (8 * (7 - last_row)));
+  return (columns * 0x0101010101010101U) & rows;
+}
+
+// Which blocks some edge leaves wholly out, and which all edges leave wholly in.
 struct BlockMasks {
   std::uint64_t touched;
   std::uint64_t full;
 };
+
+std::uint64_t SignBits(VI v) {
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(di, hn::Lt(v, hn::Zero(di)), bits);
+  return bits[0] | std::uint64_t{bits[1]} << 8;
+}
 
 BlockMasks ClassifyBlocks(const TileEdges& edges) {
   const auto lanes = static_cast<int>(hn::Lanes(di));
   std::uint64_t outside = 0;
   std::uint64_t partial = 0;
   for (int block = 0; block < kBlocksPerTile; block += lanes) {
-    const VI index = hn::Add(hn::Iota(di, block), hn::Zero(di));
+    const VI index = hn::Iota(di, block);
     const VI x = hn::ShiftLeft<3>(hn::And(index, hn::Set(di, kBlocksPerTileSide - 1)));
     const VI y = hn::ShiftLeft<3>(hn::ShiftRight<3>(index));
     VI rejected = hn::Zero(di);
@@ -113,12 +139,8 @@ BlockMasks ClassifyBlocks(const TileEdges& edges) {
       rejected = hn::Or(rejected, hn::Add(e, hn::Set(di, rise)));
       crossed = hn::Or(crossed, hn::Add(e, hn::Set(di, fall)));
     }
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(di, hn::Lt(rejected, hn::Zero(di)), bits);
-    outside |= (bits[0] | std::uint64_t{bits[1]} << 8) << block;
-    std::uint8_t crossed_bits[8] = {};
-    hn::StoreMaskBits(di, hn::Lt(crossed, hn::Zero(di)), crossed_bits);
-    partial |= (crossed_bits[0] | std::uint64_t{crossed_bits[1]} << 8) << block;
+    outside |= SignBits(rejected) << block;
+    partial |= SignBits(crossed) << block;
   }
   return {~outside, ~outside & ~partial};
 }
@@ -148,61 +170,114 @@ HWY_INLINE VF WriteVector(VF z, M covered, std::uint32_t index, int p, TileState
   return now;
 }
 
+// A triangle's depth over the pixels of a block.
+class BlockDepth {
+ public:
+  // x, y: the block's first pixel from the triangle's reference pixel
+  HWY_INLINE BlockDepth(const DepthPlane& plane, int x, int y)
+      : plane_(plane), x_(static_cast<float>(x)), y_(static_cast<float>(y)) {}
+
+  HWY_INLINE VF At(int p) const {
+    const VF dx = hn::Add(hn::Set(df, x_), hn::Load(df, kBlockOffsets.column + p));
+    const VF dy = hn::Add(hn::Set(df, y_), hn::Load(df, kBlockOffsets.row + p));
+    const VF z = hn::Add(hn::Add(hn::Set(df, plane_.z), hn::Mul(hn::Set(df, plane_.dzdx), dx)),
+                         hn::Mul(hn::Set(df, plane_.dzdy), dy));
+    return hn::Min(hn::Max(z, hn::Set(df, plane_.lo)), hn::Set(df, plane_.hi));
+  }
+
+ private:
+  const DepthPlane& plane_;
+  float x_, y_;
+};
+
+// Change of an edge from the first pixel of a vector to its others: the same for every vector of a block.
+HWY_INLINE VI EdgeLanes(std::int32_t a, std::int32_t b) {
+  const VI lane = hn::Iota(di, 0);
+  const VI column = hn::And(lane, hn::Set(di, kBlockSize - 1));
+  const VI row = hn::ShiftRight<3>(lane);
+  return hn::Add(hn::Mul(hn::Set(di, a), column), hn::Mul(hn::Set(di, b), row));
+}
+
+// Draws the covered pixels with numbers [begin, end) of a block, whole vectors of them, and returns a depth that none
+// of them is behind. `N` edges are tested; c holds their values at the block's first pixel.
+template <int N>
+HWY_INLINE VF DrawBlockPixels(const TileEdges& edges, const std::int32_t* c, const BlockDepth& depth,
+                              std::uint32_t shade, int block, int begin, int end, TileState& state) {
+  const auto lanes = static_cast<int>(hn::Lanes(di));
+  VF deepest = hn::Set(df, 1.0F);
+  for (int p = begin; p < end; p += lanes) {
+    VI outside = hn::Zero(di);
+    for (int i = 0; i < N; ++i) {
+      const std::int32_t at_vector = c[i] + edges.a[i] * (p & (kBlockSize - 1)) + edges.b[i] * (p >> 3);
+      outside = hn::Or(outside, hn::Add(hn::Set(di, at_vector), EdgeLanes(edges.a[i], edges.b[i])));
+    }
+    const auto covered = hn::RebindMask(df, hn::Not(hn::Lt(outside, hn::Zero(di))));
+    deepest = hn::Min(deepest, WriteVector(depth.At(p), covered, shade, block * kBlockPixels + p, state));
+  }
+  return deepest;
+}
+
+// Triangles within a few blocks: every vector under the box is tested against all crossing edges.
+template <int N>
+void DrawMedium(const LargeTriangle& triangle, const TileEdges& edges, const TileBox& box, int x0, int y0,
+                TileState& state) {
+  const auto lanes = static_cast<int>(hn::Lanes(di));
+  for (int by = box.y_min & ~7; by <= box.y_max; by += kBlockSize) {
+    const int begin = (std::max(box.y_min - by, 0) * kBlockSize) & ~(lanes - 1);
+    const int end = (std::min(box.y_max - by, kBlockSize - 1) + 1) * kBlockSize;
+    for (int bx = box.x_min & ~7; bx <= box.x_max; bx += kBlockSize) {
+      const int block = by + bx / kBlockSize;
+      if (triangle.depth.hi < state.farthest[block]) continue;
+      std::int32_t c[3];
+      for (int i = 0; i < N; ++i) c[i] = edges.c[i] + edges.a[i] * bx + edges.b[i] * by;
+      const BlockDepth depth(triangle.depth, x0 + bx - triangle.ref_x, y0 + by - triangle.ref_y);
+      DrawBlockPixels<N>(edges, c, depth, triangle.shade, block, begin, end, state);
+    }
+  }
+}
+
+// Triangles over many blocks: blocks are sorted out first.
+template <int N>
+void DrawBig(const LargeTriangle& triangle, const TileEdges& edges, const TileBox& box, int x0, int y0,
+             TileState& state) {
+  const BlockMasks blocks = ClassifyBlocks(edges);
+  for (std::uint64_t rest = blocks.touched & BlocksUnder(box); rest != 0; rest &= rest - 1) {
+    const int block = std::countr_zero(rest);
+    if (triangle.depth.hi < state.farthest[block]) continue;
+    const int bx = (block % kBlocksPerTileSide) * kBlockSize;
+    const int by = (block / kBlocksPerTileSide) * kBlockSize;
+    const BlockDepth depth(triangle.depth, x0 + bx - triangle.ref_x, y0 + by - triangle.ref_y);
+    VF deepest;
+    if ((blocks.full >> block & 1U) != 0) {
+      deepest = DrawBlockPixels<0>(edges, nullptr, depth, triangle.shade, block, 0, kBlockPixels, state);
+    } else {
+      std::int32_t c[3];
+      for (int i = 0; i < N; ++i) c[i] = edges.c[i] + edges.a[i] * bx + edges.b[i] * by;
+      deepest = DrawBlockPixels<N>(edges, c, depth, triangle.shade, block, 0, kBlockPixels, state);
+    }
+    state.farthest[block] = hn::GetLane(hn::MinOfLanes(df, deepest));
+  }
+}
+
+constexpr int kMediumSize = 24;  // pixels per side; beyond, sorting out blocks pays
+
 void DrawLarge(const LargeTriangle& triangle, int x0, int y0, TileState& state) {
   TileEdges edges;
   if (!EdgesInTile(triangle, x0, y0, edges)) return;
-  const BlockMasks blocks = ClassifyBlocks(edges);
-  const auto lanes = static_cast<int>(hn::Lanes(di));
-
-  // Change of each crossing edge from a block's first pixel to each of its pixels.
-  alignas(64) std::int32_t edge_offsets[3][kBlockPixels];
-  for (int i = 0; blocks.touched != blocks.full && i < edges.count; ++i)
-    for (int p = 0; p < kBlockPixels; p += lanes) {
-      const VI column = hn::ConvertTo(di, hn::Load(df, kBlockOffsets.column + p));
-      const VI row = hn::ConvertTo(di, hn::Load(df, kBlockOffsets.row + p));
-      hn::Store(hn::Add(hn::Mul(hn::Set(di, edges.a[i]), column), hn::Mul(hn::Set(di, edges.b[i]), row)), di,
-                edge_offsets[i] + p);
-    }
-
-  const DepthPlane& plane = triangle.depth;
-  const VF z_ref = hn::Set(df, plane.z);
-  const VF dzdx = hn::Set(df, plane.dzdx);
-  const VF dzdy = hn::Set(df, plane.dzdy);
-  const VF lo = hn::Set(df, plane.lo);
-  const VF hi = hn::Set(df, plane.hi);
-
-  for (std::uint64_t rest = blocks.touched; rest != 0; rest &= rest - 1) {
-    const int block = std::countr_zero(rest);
-    const float farthest = state.farthest[block];
-    if (plane.hi < farthest) continue;
-    const int bx = (block % kBlocksPerTileSide) * kBlockSize;
-    const int by = (block / kBlocksPerTileSide) * kBlockSize;
-    const VF dx0 = hn::Set(df, static_cast<float>(x0 + bx - triangle.ref_x));
-    const VF dy0 = hn::Set(df, static_cast<float>(y0 + by - triangle.ref_y));
-    const auto depthOf = [&](int p) HWY_ATTR {
-      const VF dx = hn::Add(dx0, hn::Load(df, kBlockOffsets.column + p));
-      const VF dy = hn::Add(dy0, hn::Load(df, kBlockOffsets.row + p));
-      const VF z = hn::Add(hn::Add(z_ref, hn::Mul(dzdx, dx)), hn::Mul(dzdy, dy));
-      return hn::Min(hn::Max(z, lo), hi);
-    };
-    VF deepest = hn::Set(df, 1.0F);
-    const int first = block * kBlockPixels;
-    if ((blocks.full >> block & 1U) != 0) {
-      const auto all = hn::Eq(z_ref, z_ref);
-      for (int p = 0; p < kBlockPixels; p += lanes)
-        deepest = hn::Min(deepest, WriteVector(depthOf(p), all, triangle.shade, first + p, state));
-    } else {
-      std::int32_t at_block[3];
-      for (int i = 0; i < edges.count; ++i) at_block[i] = edges.c[i] + edges.a[i] * bx + edges.b[i] * by;
-      for (int p = 0; p < kBlockPixels; p += lanes) {
-        VI outside = hn::Zero(di);
-        for (int i = 0; i < edges.count; ++i)
-          outside = hn::Or(outside, hn::Add(hn::Set(di, at_block[i]), hn::Load(di, edge_offsets[i] + p)));
-        const auto covered = hn::RebindMask(df, hn::Not(hn::Lt(outside, hn::Zero(di))));
-        deepest = hn::Min(deepest, WriteVector(depthOf(p), covered, triangle.shade, first + p, state));
-      }
-    }
-    state.farthest[block] = hn::GetLane(hn::MinOfLanes(df, deepest));
+  const TileBox box = BoxInTile(triangle, x0, y0);
+  const bool medium = box.x_max - box.x_min < kMediumSize && box.y_max - box.y_min < kMediumSize;
+  const auto draw = [&]<int N>(std::integral_constant<int, N>) {
+    medium ? DrawMedium<N>(triangle, edges, box, x0, y0, state) : DrawBig<N>(triangle, edges, box, x0, y0, state);
+  };
+  switch (edges.count) {
+    case 0:
+      return draw(std::integral_constant<int, 0>{});
+    case 1:
+      return draw(std::integral_constant<int, 1>{});
+    case 2:
+      return draw(std::integral_constant<int, 2>{});
+    default:
+      return draw(std::integral_constant<int, 3>{});
   }
 }
 

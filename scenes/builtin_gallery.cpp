@@ -30,16 +30,15 @@ class Arrangement {
  public:
   explicit Arrangement(int detail) : detail_(detail) {}
 
-  int detail() const { return detail_; }
-  int quads(int at_detail_1) const { return detail_ * at_detail_1; }
-
   std::uint32_t addMaterial(Material material) {
     scene_.materials.push_back(std::move(material));
     return static_cast<std::uint32_t>(scene_.materials.size() - 1);
   }
 
-  std::uint32_t addMesh(mesh::Mesh m) {
-    scene_.meshes.push_back(std::move(m));
+  /// shape(detail); shadows are those of shape(1), so that more detail changes nothing but the outlines.
+  std::uint32_t addMesh(const std::function<mesh::Mesh(int detail)>& shape) {
+    scene_.meshes.push_back(shape(detail_));
+    casters_.push_back(shape(1));
     return static_cast<std::uint32_t>(scene_.meshes.size() - 1);
   }
 
@@ -55,7 +54,7 @@ class Arrangement {
   /// Shadows of all instances added so far.
   FloorLight lightOn(const FloorArea& area) const {
     std::vector<Occluder> occluders;
-    for (const Instance& i : scene_.instances) occluders.push_back({&scene_.meshes[i.mesh], i.world_from_object});
+    for (const Instance& i : scene_.instances) occluders.push_back({&casters_[i.mesh], i.world_from_object});
     return computeFloorLight(area, occluders, kKeyDirection);
   }
 
@@ -64,6 +63,7 @@ class Arrangement {
  private:
   int detail_;
   Scene scene_;
+  std::vector<mesh::Mesh> casters_;
 };
 
 Material plain(const std::string& name, const Vec3& color, float specular, float shininess) {
@@ -157,7 +157,7 @@ mesh::Mesh globeStand(int detail) {
 }
 
 /// A cut stone: table, crown and pavilion, all facets flat.
-mesh::Mesh gem() {
+mesh::Mesh gem(int /*detail*/) {
   constexpr int kSides = 8;
   const auto ring = [](double radius, double y, double offset) {
     std::vector<DVec3> points;
@@ -192,16 +192,22 @@ mesh::Mesh gem() {
   return m;
 }
 
-/// The dais' rim and its lower step; the floor itself is a disc of its own.
+/// The slab under the floor disc, without its top.
 mesh::Mesh daisRim(int detail) {
   const double r = kDaisRadius;
-  const std::array<ProfilePiece, 6> profile = {
+  const std::array<ProfilePiece, 3> profile = {
       ProfilePiece{{{r, 0.0}, {r + 0.05, 0.0}, {r + 0.08, -0.03}, {r + 0.08, -0.08}}},
-      straightPiece(r + 0.08, -0.08, r + 0.08, -0.34),
-      straightPiece(r + 0.08, -0.34, r + 0.72, -0.34),
-      ProfilePiece{{{r + 0.72, -0.34}, {r + 0.77, -0.34}, {r + 0.80, -0.37}, {r + 0.80, -0.42}}},
-      straightPiece(r + 0.80, -0.42, r + 0.80, -0.68),
-      straightPiece(r + 0.80, -0.68, 0.0, -0.68)};
+      straightPiece(r + 0.08, -0.08, r + 0.08, -0.34), straightPiece(r + 0.08, -0.34, 0.0, -0.34)};
+  return revolve(profile, 128 * detail, 3 * detail);
+}
+
+/// The step below the slab.
+mesh::Mesh daisStep(int detail) {
+  const double r = kDaisRadius + 0.55;
+  const std::array<ProfilePiece, 4> profile = {
+      straightPiece(0.0, -0.34, r, -0.34),
+      ProfilePiece{{{r, -0.34}, {r + 0.05, -0.34}, {r + 0.08, -0.37}, {r + 0.08, -0.42}}},
+      straightPiece(r + 0.08, -0.42, r + 0.08, -0.68), straightPiece(r + 0.08, -0.68, 0.0, -0.68)};
   return revolve(profile, 128 * detail, 3 * detail);
 }
 
@@ -224,9 +230,9 @@ Image8 paintGlobe() {
     const double longitude = 2.0 * kPi * u;
     const double radius = std::sin(kPi * v);
     const DVec3 p(radius * std::sin(longitude), std::cos(kPi * v), radius * std::cos(longitude));
-    const DVec3 q = 1.7 * p + DVec3(11.3, 4.1, 7.9);
-    const double land = fractalNoise(q.x, q.y, q.z, 7, 0.55, 5) - 0.51;
-    const double rough = fractalNoise(6.0 * q.x, 6.0 * q.y, 6.0 * q.z, 4, 0.6, 17);
+    const DVec3 q = 1.25 * p + DVec3(11.3, 4.1, 7.9);
+    const double land = fractalNoise(q.x, q.y, q.z, 7, 0.52, 5) - 0.50;
+    const double rough = fractalNoise(6.0 * q.x, 6.0 * q.y, 6.0 * q.z, 3, 0.6, 17);
     const double latitude = std::abs(2.0 * v - 1.0);
     const DVec3 sea = mixColors(DVec3(0.02, 0.10, 0.26), DVec3(0.06, 0.32, 0.48), 1.0 + land / 0.10);
     DVec3 ground = mixColors(DVec3(0.42, 0.34, 0.13), DVec3(0.10, 0.27, 0.07), (latitude - 0.18) / 0.22 + rough - 0.5);
@@ -250,51 +256,47 @@ double litFraction(double key, double sky) {
          (full_key + kSkyRadiance + 0.3 * kFillRadiance);
 }
 
-/// Reads a floor's light between the centres of its texels.
-double sampleLight(const std::vector<float>& values, int side, double u, double v) {
-  const double x = std::clamp(u * side - 0.5, 0.0, side - 1.001);
-  const double y = std::clamp(v * side - 0.5, 0.0, side - 1.001);
-  const auto i = static_cast<std::size_t>(x);
-  const auto j = static_cast<std::size_t>(y);
-  const auto n = static_cast<std::size_t>(side);
-  const auto at = [&](std::size_t di, std::size_t dj) { return static_cast<double>(values[(j + dj) * n + i + di]); };
-  const double fx = x - std::floor(x);
-  const double fy = y - std::floor(y);
-  return (at(0, 0) * (1.0 - fx) + at(1, 0) * fx) * (1.0 - fy) + (at(0, 1) * (1.0 - fx) + at(1, 1) * fx) * fy;
-}
-
-/// Rings of light and dark stone around a centre, with joints; the parameters are polar coordinates in metres.
-DVec3 floorPattern(double x, double z) {
-  const double radius = std::sqrt(x * x + z * z);
-  const double turns = std::atan2(x, z) / (2.0 * kPi) + 0.5;
-  const auto stone = [&](int ring, int index) {
-    const bool dark = (ring + index) % 2 == 0;
-    const double tone = 0.9 + 0.2 * hashFraction(ring, index, 0, 9);
-    const double grain = 0.86 + 0.28 * fractalNoise(3.0 * x + 50.0, 3.0 * z + 50.0, 0.0, 5, 0.6, 23);
-    return (dark ? DVec3(0.20, 0.19, 0.19) : DVec3(0.60, 0.55, 0.47)) * (tone * grain);
-  };
+/// Rings of light and dark stones about the middle, with joints between and a band of brass along the rim.
+/// x, z  metres from the middle; grain  about 1, the unevenness of stone there
+DVec3 floorPattern(double x, double z, double grain) {
   constexpr double kRing = 0.65;
+  const DVec3 light_stone(0.58, 0.53, 0.45);
+  const DVec3 dark_stone(0.25, 0.235, 0.225);
+  const double radius = std::sqrt(x * x + z * z);
+  if (radius > kDaisRadius - 0.40) {
+    const double from_band = std::abs(radius - (kDaisRadius - 0.20));
+    return mixColors(DVec3(0.42, 0.24, 0.07), light_stone * grain, smoothStep(0.07, 0.08, from_band));
+  }
   const double ring_at = radius / kRing;
   const int ring = static_cast<int>(ring_at);
-  if (radius > kDaisRadius - 0.40) {
-    const double grain = 0.86 + 0.28 * fractalNoise(3.0 * x + 50.0, 3.0 * z + 50.0, 0.0, 5, 0.6, 23);
-    const double inlay = smoothStep(0.02, 0.03, std::abs(radius - (kDaisRadius - 0.20)) - 0.05);
-    return mixColors(DVec3(0.42, 0.24, 0.07), DVec3(0.60, 0.55, 0.47) * grain, inlay);
-  }
-  const int stones = std::max(6, 12 * ((ring + 2) / 2));
-  const double along = turns * stones + 0.5 * ring;
-  const auto index = static_cast<int>(std::floor(along)) % stones;
+  const int stones = 12 * ((ring + 2) / 2);
+  const double along = (std::atan2(x, z) / (2.0 * kPi) + 0.5) * stones + 0.5 * ring;
+  const int index = static_cast<int>(along) % stones;
+  const double tone = 0.9 + 0.2 * hashFraction(ring, index, 0, 9);
   const double joint = std::min(std::abs(ring_at - std::round(ring_at)) * kRing,
                                 std::abs(along - std::round(along)) / stones * 2.0 * kPi * radius);
-  return stone(ring, index) * (0.45 + 0.55 * smoothStep(0.006, 0.016, joint));
+  const DVec3 stone = (ring + index) % 2 == 0 ? dark_stone : light_stone;
+  return stone * (tone * grain * (0.45 + 0.55 * smoothStep(0.006, 0.016, joint)));
 }
 
-Image8 paintFloor(const FloorArea& area, const FloorLight& light, int texels,
-                  const std::function<DVec3(double x, double z)>& pattern) {
-  return paintImage(texels, texels, [&](double u, double v) {
-    const double key = sampleLight(light.key, area.texels, u, v);
-    const double sky = sampleLight(light.sky, area.texels, u, v);
-    return pattern(area.side * (u - 0.5), area.side * (v - 0.5)) * litFraction(key, sky);
+Image8 paintFloor(const FloorLight& light) {
+  // Noise is slow and the grain is fine but soft: a table of it, repeated, will do.
+  constexpr int kGrainSide = 512;
+  constexpr double kGrainMetres = 2.9;
+  LightMap grain{kGrainSide, {}};
+  for (int j = 0; j < kGrainSide; ++j)
+    for (int i = 0; i < kGrainSide; ++i)
+      grain.values.push_back(
+          static_cast<float>(0.86 + 0.28 * fractalNoise(i * 9.0 / kGrainSide, j * 9.0 / kGrainSide, 0.0, 5, 0.6, 23)));
+  const auto folded = [](double metres) {  // to and fro, so that the table's edges meet
+    const double t = metres / kGrainMetres;
+    return std::abs(t - 2.0 * std::round(0.5 * t));
+  };
+  return paintImage(1536, 1536, [&](double u, double v) {
+    const double x = kFloorSide * (u - 0.5);
+    const double z = kFloorSide * (v - 0.5);
+    if (x * x + z * z > (kDaisRadius + 0.05) * (kDaisRadius + 0.05)) return DVec3(0.5);  // beyond the disc
+    return floorPattern(x, z, grain.at(folded(x), folded(z))) * litFraction(light.key.at(u, v), light.sky.at(u, v));
   });
 }
 
@@ -306,18 +308,23 @@ void addLitSquare(Arrangement& a, double x, double z, double height, double side
   const FloorLight light = a.lightOn(area);
   Material material = like;
   material.base_color_texture.texture =
-      a.addTexture(like.name + " shadows", paintFloor(area, light, 256, [](double, double) { return DVec3(1.0); }));
+      a.addTexture(like.name + " shadows", paintImage(256, 256, [&](double u, double v) {
+                     return DVec3(litFraction(light.key.at(u, v), light.sky.at(u, v)));
+                   }));
   material.base_color_texture.wrap_u = Wrap::kClamp;
   material.base_color_texture.wrap_v = Wrap::kClamp;
   const DMat4 world_from_object = placed(x, height, z, 1.0, turn);
-  mesh::Mesh top = gridSurface({a.quads(8), a.quads(8), false, false}, [&](double u, double v) {
-    return SurfacePoint{DVec3(side * (u - 0.5), 0.0, side * (v - 0.5)), DVec3(0.0, 1.0, 0.0)};
-  });
-  for (std::size_t i = 0; i < top.vertexCount(); ++i) {
-    const DVec3 world(world_from_object * DVec4(DVec3(top.positions[i]), 1.0));
-    top.texcoords[i] = Vec2((world.x - x) / area.side + 0.5, (world.z - z) / area.side + 0.5);
-  }
-  a.add(a.addMesh(std::move(top)), a.addMaterial(material), world_from_object);
+  const auto shape = [&](int detail) {
+    mesh::Mesh top = gridSurface({8 * detail, 8 * detail, false, false}, [&](double u, double v) {
+      return SurfacePoint{DVec3(side * (u - 0.5), 0.0, side * (v - 0.5)), DVec3(0.0, 1.0, 0.0)};
+    });
+    for (std::size_t i = 0; i < top.vertexCount(); ++i) {
+      const DVec3 world(world_from_object * DVec4(DVec3(top.positions[i]), 1.0));
+      top.texcoords[i] = Vec2((world.x - x) / area.side + 0.5, (world.z - z) / area.side + 0.5);
+    }
+    return top;
+  };
+  a.add(a.addMesh(shape), a.addMaterial(material), world_from_object);
 }
 
 void addTeapotOnPlinth(Arrangement& a) {
@@ -327,13 +334,14 @@ void addTeapotOnPlinth(Arrangement& a) {
   constexpr double kTurn = 0.32;
   Material glaze = plain("glaze", Vec3(0.05F, 0.25F, 0.30F), 0.14F, 140.0F);
   glaze.double_sided = true;
-  a.add(a.addMesh(teapotMesh(a.quads(12))), a.addMaterial(glaze), placed(kX, kPlinthHeight, kZ, 0.46, kTurn));
+  a.add(a.addMesh([](int detail) { return teapotMesh(12 * detail); }), a.addMaterial(glaze),
+        placed(kX, kPlinthHeight, kZ, 0.46, kTurn));
   const Material stone = solid("plinth", Solid::kMarble, Vec3(0.62F, 0.52F, 0.42F), Vec3(0.34F, 0.20F, 0.14F), 1.4F);
   addLitSquare(a, kX, kZ, kPlinthHeight, kSide, kTurn, stone);
   const double half = 0.5 * kSide;
   const std::array<std::array<double, 2>, 4> square = {{{-half, half}, {half, half}, {half, -half}, {-half, -half}}};
   // Its top face lies just below the painted one.
-  a.add(a.addMesh(prismMesh(square, 0.0, kPlinthHeight - 0.004)), a.addMaterial(stone),
+  a.add(a.addMesh([&](int) { return prismMesh(square, 0.0, kPlinthHeight - 0.004); }), a.addMaterial(stone),
         placed(kX, 0.0, kZ, 1.0, kTurn));
 }
 
@@ -346,11 +354,12 @@ void addKnotOnColumn(Arrangement& a) {
   const DMat4 stand =
       placed(kX, kColumnHeight + 1.17, kZ, 0.40, -0.35) * DMat4(DVec4(1.0, 0.0, 0.0, 0.0), DVec4(0.0, 0.0, 1.0, 0.0),
                                                                 DVec4(0.0, -1.0, 0.0, 0.0), DVec4(0.0, 0.0, 0.0, 1.0));
-  a.add(a.addMesh(torusKnotMesh(knot, a.quads(320), a.quads(28))), a.addMaterial(whiteMarble()), stand);
+  a.add(a.addMesh([&](int detail) { return torusKnotMesh(knot, 320 * detail, 28 * detail); }),
+        a.addMaterial(whiteMarble()), stand);
   const std::uint32_t marble =
       a.addMaterial(solid("column marble", Solid::kMarble, Vec3(0.78F, 0.74F, 0.68F), Vec3(0.46F, 0.40F, 0.36F), 0.9F));
-  a.add(a.addMesh(columnShaft(a.detail())), marble, placed(kX, 0.0, kZ));
-  a.add(a.addMesh(columnEnds(a.detail())), marble, placed(kX, 0.0, kZ));
+  a.add(a.addMesh(columnShaft), marble, placed(kX, 0.0, kZ));
+  a.add(a.addMesh(columnEnds), marble, placed(kX, 0.0, kZ));
 }
 
 void addGlobe(Arrangement& a) {
@@ -362,25 +371,25 @@ void addGlobe(Arrangement& a) {
   const double tilt = radians(-18.0);
   const DMat4 tilted(DVec4(std::cos(tilt), std::sin(tilt), 0.0, 0.0), DVec4(-std::sin(tilt), std::cos(tilt), 0.0, 0.0),
                      DVec4(0.0, 0.0, 1.0, 0.0), DVec4(0.0, 0.0, 0.0, 1.0));
-  a.add(a.addMesh(globeMesh(a.quads(96), a.quads(48))), a.addMaterial(globe),
+  a.add(a.addMesh([](int detail) { return globeMesh(96 * detail, 48 * detail); }), a.addMaterial(globe),
         placed(kX, 1.24, kZ, 0.84) * tilted * placed(0.0, 0.0, 0.0, 1.0, 2.2));
   const std::uint32_t wood =
       a.addMaterial(solid("stand wood", Solid::kWood, Vec3(0.36F, 0.17F, 0.07F), Vec3(0.16F, 0.07F, 0.03F), 7.0F));
-  a.add(a.addMesh(globeStand(a.detail())), wood, placed(kX, 0.0, kZ));
+  a.add(a.addMesh(globeStand), wood, placed(kX, 0.0, kZ));
 }
 
 void addVase(Arrangement& a) {
   const std::uint32_t wood =
       a.addMaterial(solid("vase wood", Solid::kWood, Vec3(0.62F, 0.38F, 0.17F), Vec3(0.30F, 0.14F, 0.05F), 6.0F));
-  a.add(a.addMesh(vase(a.detail())), wood, placed(2.75, 0.0, -1.65, 1.12));
+  a.add(a.addMesh(vase), wood, placed(2.75, 0.0, -1.65, 1.12));
 }
 
 void addPawns(Arrangement& a) {
-  const std::uint32_t shape = a.addMesh(pawn(a.detail()));
+  const std::uint32_t shape = a.addMesh(pawn);
   const std::uint32_t ivory = a.addMaterial(plain("ivory", Vec3(0.80F, 0.70F, 0.50F), 0.08F, 80.0F));
   const std::uint32_t ebony = a.addMaterial(plain("ebony", Vec3(0.045F, 0.035F, 0.035F), 0.12F, 90.0F));
-  a.add(shape, ivory, placed(-2.95, 0.0, -1.15, 1.25));
-  a.add(shape, ebony, placed(-1.85, 0.0, -2.05, 1.25));
+  a.add(shape, ivory, placed(-3.85, 0.0, -0.75, 1.2));
+  a.add(shape, ebony, placed(-1.75, 0.0, -2.1, 1.25));
 }
 
 void addSmallThings(Arrangement& a) {
@@ -390,24 +399,24 @@ void addSmallThings(Arrangement& a) {
   const double lean = std::atan2(0.56, 0.52 * std::cos(kPi / 8.0));
   const DMat4 leaning(DVec4(1.0, 0.0, 0.0, 0.0), DVec4(0.0, std::cos(lean), std::sin(lean), 0.0),
                       DVec4(0.0, -std::sin(lean), std::cos(lean), 0.0), DVec4(0.0, 0.0, 0.0, 1.0));
-  a.add(a.addMesh(gem()), a.addMaterial(ruby),
+  a.add(a.addMesh(gem), a.addMaterial(ruby),
         placed(0.45, 0.0, 2.0, 0.95, -2.4) * leaning * placed(0.0, 0.0, 0.0, 1.0, kPi / 8.0));
   const Material checker =
       solid("checker", Solid::kChecker, Vec3(0.80F, 0.76F, 0.66F), Vec3(0.62F, 0.20F, 0.05F), 4.0F);
-  a.add(a.addMesh(boxMesh(DVec3(-0.374, 0.0, -0.374), DVec3(0.374, 0.748, 0.374))), a.addMaterial(checker),
-        placed(3.55, 0.0, 1.2, 0.75, 0.5));
+  a.add(a.addMesh([](int) { return boxMesh(DVec3(-0.374, 0.0, -0.374), DVec3(0.374, 0.748, 0.374)); }),
+        a.addMaterial(checker), placed(3.55, 0.0, 1.2, 0.75, 0.5));
 }
 
 void addDais(Arrangement& a) {
   const FloorArea area{0.0, 0.0, 0.0, kFloorSide, 1024};
   const FloorLight light = a.lightOn(area);
   Material floor = plain("floor", Vec3(1.0F), 0.03F, 40.0F);
-  floor.base_color_texture.texture = a.addTexture("floor", paintFloor(area, light, 2048, floorPattern));
+  floor.base_color_texture.texture = a.addTexture("floor", paintFloor(light));
   floor.base_color_texture.wrap_u = Wrap::kClamp;
   floor.base_color_texture.wrap_v = Wrap::kClamp;
-  a.add(a.addMesh(floorDisc(a.detail())), a.addMaterial(floor), DMat4(1.0));
-  a.add(a.addMesh(daisRim(a.detail())), a.addMaterial(plain("dais", Vec3(0.50F, 0.46F, 0.40F), 0.03F, 30.0F)),
-        DMat4(1.0));
+  a.add(a.addMesh(floorDisc), a.addMaterial(floor), DMat4(1.0));
+  a.add(a.addMesh(daisRim), a.addMaterial(plain("slab", Vec3(0.50F, 0.46F, 0.40F), 0.03F, 30.0F)), DMat4(1.0));
+  a.add(a.addMesh(daisStep), a.addMaterial(plain("step", Vec3(0.17F, 0.16F, 0.16F), 0.05F, 30.0F)), DMat4(1.0));
 }
 
 }  // namespace
@@ -432,8 +441,8 @@ Scene buildGallery(const BuiltinArguments& arguments) {
 
   Camera camera;
   camera.name = "visitor";
-  camera.eye = DVec3(1.6, 4.2, 11.2);
-  camera.target = DVec3(0.05, 0.92, -0.1);
+  camera.eye = DVec3(1.5, 3.9, 12.6);
+  camera.target = DVec3(0.0, 1.35, -0.1);
   camera.vertical_fov_rad = radians(29.0);
   scene.cameras.push_back(camera);
   return scene;

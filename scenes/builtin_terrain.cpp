@@ -7,15 +7,15 @@ namespace {
 
 constexpr double kSide = 10.0;        // metres along x and z
 constexpr double kFeatures = 3.0;     // cells of the coarsest noise along a side
-constexpr double kHighest = 2.6;      // metres, at relief 1
+constexpr double kHighest = 2.3;      // metres, at relief 1
 constexpr double kWaterLevel = 0.30;  // fraction of the height range that is under water
 constexpr int kOctaves = 9;           // the finest cell is kSide / (kFeatures * 2^8): 1.3 cm
 
 /// Height of the ground before the water fills it, as a fraction. x and z in cells of the coarsest noise.
 double groundLevel(double x, double z, std::uint32_t seed) {
-  const double base = fractalNoise(x, z, 0.0, kOctaves, 0.5, seed);
+  const double base = fractalNoise(x, z, 0.0, kOctaves, 0.45, seed);
   // Folding the noise about its middle makes ridges; they rise with the land so that valleys stay gentle.
-  const double folded = 1.0 - std::abs(2.0 * fractalNoise(x + 31.7, z - 17.3, 0.0, kOctaves, 0.45, seed + 101) - 1.0);
+  const double folded = 1.0 - std::abs(2.0 * fractalNoise(x + 31.7, z - 17.3, 0.0, kOctaves, 0.42, seed + 101) - 1.0);
   const double land = std::clamp((base - 0.25) / 0.5, 0.0, 1.0);
   return land * (0.45 + 0.55 * folded * folded);
 }
@@ -35,8 +35,8 @@ Vec3 groundColor(double level, double steepness, double grain) {
   Vec3 color = mix(sand, meadow, (level - 0.02 + 0.3 * wobble) / 0.03);
   color = mix(color, forest, (level - 0.14 + wobble) / 0.16);
   color = mix(color, rock, (level - 0.42 + wobble) / 0.12);
-  color = mix(color, rock, (steepness - 0.22 + wobble) / 0.10);
-  color = mix(color, snow, std::min((level - 0.58 + wobble) / 0.06, (0.42 - steepness) / 0.10));
+  color = mix(color, rock, (steepness - 0.26 + wobble) / 0.12);
+  color = mix(color, snow, std::min((level - 0.58 + wobble) / 0.06, (0.50 - steepness) / 0.12));
   return color * static_cast<float>(0.85 + 0.3 * grain);
 }
 
@@ -99,6 +99,18 @@ Scene buildTerrain(const BuiltinArguments& arguments) {
   material.shininess = 12.0F;
   scene.materials.push_back(material);
   scene.instances.emplace_back();
+
+  // A low sun shows the relief.
+  scene.lights.push_back({Vec3(glm::normalize(DVec3(-0.8, 0.62, 0.25))), Vec3(0.92F, 0.83F, 0.70F)});
+  scene.ambient.sky = Vec3(0.22F, 0.27F, 0.34F);
+  scene.ambient.ground = Vec3(0.08F, 0.08F, 0.07F);
+  scene.background = Vec3(0.50F, 0.62F, 0.76F);
+  Camera camera;
+  camera.name = "from the south";
+  camera.eye = DVec3(1.2, 5.6, 10.4);
+  camera.target = DVec3(0.0, 0.0, 0.35);
+  camera.vertical_fov_rad = radians(40.0);
+  scene.cameras.push_back(camera);
   return scene;
 }
 

@@ -5,8 +5,8 @@
 namespace sheaf::scenes {
 namespace {
 
-constexpr int kKeyDirections = 24;
-constexpr int kSkyDirections = 48;
+constexpr int kKeyDirections = 16;
+constexpr int kSkyDirections = 32;
 constexpr double kKeyRadius = 0.055;  // tangent of the key's half angle: what makes its shadows soft
 
 /// Direction i of n, evenly spread over the unit disc: a sunflower pattern by repeated turns of the golden angle, with
@@ -50,6 +50,7 @@ class ShadowMask {
  private:
   double toTexel(double from_center) const { return (from_center / area_.side + 0.5) * area_.texels; }
 
+  /// Only triangles that face the light: a solid's other ones shade the same texels once more.
   void fill(const std::array<std::array<double, 2>, 3>& p) {
     const double last = area_.texels - 1.0;
     const auto first = [&](double lo) { return static_cast<int>(std::clamp(std::ceil(lo - 0.5), 0.0, last + 1.0)); };
@@ -58,16 +59,15 @@ class ShadowMask {
       return (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]);
     };
     const double area = edge(p[0], p[1], p[2][0], p[2][1]);
-    if (area == 0.0) return;
-    const double sign = area > 0.0 ? 1.0 : -1.0;
+    if (area >= 0.0) return;
     const int x_end = end(std::max({p[0][0], p[1][0], p[2][0]}));
     const int y_end = end(std::max({p[0][1], p[1][1], p[2][1]}));
     for (int y = first(std::min({p[0][1], p[1][1], p[2][1]})); y < y_end; ++y)
       for (int x = first(std::min({p[0][0], p[1][0], p[2][0]})); x < x_end; ++x) {
         const double cx = x + 0.5;
         const double cy = y + 0.5;
-        const bool inside = sign * edge(p[0], p[1], cx, cy) >= 0.0 && sign * edge(p[1], p[2], cx, cy) >= 0.0 &&
-                            sign * edge(p[2], p[0], cx, cy) >= 0.0;
+        const bool inside =
+            edge(p[0], p[1], cx, cy) <= 0.0 && edge(p[1], p[2], cx, cy) <= 0.0 && edge(p[2], p[0], cx, cy) <= 0.0;
         if (inside)
           texels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(area_.texels) + static_cast<std::size_t>(x)] =
               1;
@@ -90,8 +90,8 @@ std::vector<std::array<DVec3, 3>> worldTriangles(std::span<const Occluder> occlu
 }
 
 /// Mean over the directions of what is lit.
-std::vector<float> litPart(const FloorArea& area, const std::vector<std::array<DVec3, 3>>& triangles,
-                           const std::vector<DVec3>& directions) {
+LightMap litPart(const FloorArea& area, const std::vector<std::array<DVec3, 3>>& triangles,
+                 const std::vector<DVec3>& directions) {
   ShadowMask mask(area);
   std::vector<int> shadowed(mask.texels().size(), 0);
   for (const DVec3& to_light : directions) {
@@ -99,27 +99,27 @@ std::vector<float> litPart(const FloorArea& area, const std::vector<std::array<D
     for (const auto& t : triangles) mask.add(t, to_light);
     for (std::size_t i = 0; i < shadowed.size(); ++i) shadowed[i] += mask.texels()[i];
   }
-  std::vector<float> lit(shadowed.size());
+  LightMap lit{area.texels, std::vector<float>(shadowed.size())};
   const auto count = static_cast<double>(directions.size());
-  for (std::size_t i = 0; i < lit.size(); ++i) lit[i] = static_cast<float>(1.0 - shadowed[i] / count);
+  for (std::size_t i = 0; i < shadowed.size(); ++i) lit.values[i] = static_cast<float>(1.0 - shadowed[i] / count);
   return lit;
 }
 
 /// Mean over a (2 radius + 1)^2 neighbourhood: hides the steps that a finite number of directions leaves.
-void blur(std::vector<float>& values, int side, int radius) {
-  std::vector<float> line(static_cast<std::size_t>(side));
+void blur(LightMap& map, int radius) {
+  std::vector<float> line(static_cast<std::size_t>(map.side));
   for (const bool along_x : {true, false})
-    for (int k = 0; k < side; ++k) {
+    for (int k = 0; k < map.side; ++k) {
       const auto at = [&](int i) -> float& {
-        const int c = std::clamp(i, 0, side - 1);
-        return values[static_cast<std::size_t>((along_x ? k : c) * side + (along_x ? c : k))];
+        const int c = std::clamp(i, 0, map.side - 1);
+        return map.values[static_cast<std::size_t>((along_x ? k : c) * map.side + (along_x ? c : k))];
       };
-      for (int i = 0; i < side; ++i) {
+      for (int i = 0; i < map.side; ++i) {
         double sum = 0.0;
         for (int d = -radius; d <= radius; ++d) sum += static_cast<double>(at(i + d));
         line[static_cast<std::size_t>(i)] = static_cast<float>(sum / (2 * radius + 1));
       }
-      for (int i = 0; i < side; ++i) at(i) = line[static_cast<std::size_t>(i)];
+      for (int i = 0; i < map.side; ++i) at(i) = line[static_cast<std::size_t>(i)];
     }
 }
 
@@ -145,11 +145,29 @@ FloorLight computeFloorLight(const FloorArea& area, std::span<const Occluder> oc
     sky.emplace_back(x, std::sqrt(1.0 - x * x - z * z), z);
   }
 
-  FloorLight light{litPart(area, triangles, key), litPart(area, triangles, sky)};
-  const int texel_radius = std::max(1, area.texels / 256);
-  blur(light.key, area.texels, texel_radius);
-  for (int pass = 0; pass < 2; ++pass) blur(light.sky, area.texels, 2 * texel_radius);
+  FloorArea coarse = area;
+  coarse.texels = std::max(1, area.texels / 4);
+  FloorLight light{litPart(area, triangles, key), litPart(coarse, triangles, sky)};
+  blur(light.key, std::max(1, area.texels / 512));
+  blur(light.sky, 2);
+  blur(light.sky, 2);
   return light;
+}
+
+double LightMap::at(double u, double v) const {
+  assert(side >= 2);
+  const double x = std::clamp(u * side - 0.5, 0.0, side - 1.0);
+  const double y = std::clamp(v * side - 0.5, 0.0, side - 1.0);
+  const auto i = static_cast<std::size_t>(std::min(x, side - 2.0));
+  const auto j = static_cast<std::size_t>(std::min(y, side - 2.0));
+  const double fx = x - static_cast<double>(i);
+  const double fy = y - static_cast<double>(j);
+  const float* top = values.data() + j * static_cast<std::size_t>(side) + i;
+  const float* bottom = top + side;
+  const auto mix = [fx](const float* row) {
+    return static_cast<double>(row[0]) * (1.0 - fx) + static_cast<double>(row[1]) * fx;
+  };
+  return mix(top) * (1.0 - fy) + mix(bottom) * fy;
 }
 
 }  // namespace sheaf::scenes

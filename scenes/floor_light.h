@@ -25,10 +25,19 @@ struct Occluder {
   DMat4 world_from_object{1.0};
 };
 
-/// Part of a light that reaches each texel, 0 = none, 1 = all: row by row.
+/// Part of a light that reaches each texel of a square, 0 = none, 1 = all: row by row.
+struct LightMap {
+  int side = 0;
+  std::vector<float> values;
+
+  /// Between the centres of texels; u, v in [0, 1].
+  double at(double u, double v) const;
+};
+
+/// The sky's map is coarser: its shadows have no edges.
 struct FloorLight {
-  std::vector<float> key;
-  std::vector<float> sky;
+  LightMap key;
+  LightMap sky;
 };
 
 /// Shadows of everything above the floor, in a disc of directions about `direction_to_key` and in the upper hemisphere

@@ -26,10 +26,9 @@ double lerp(double a, double b, double t) {
 }  // namespace
 
 std::uint32_t hashOf(std::int32_t x, std::int32_t y, std::int32_t z, std::uint32_t seed) {
-  std::uint32_t h = mix(seed + 0x9e3779b9U);
-  h = mix(h ^ static_cast<std::uint32_t>(x));
-  h = mix(h + static_cast<std::uint32_t>(y));
-  return mix(h ^ static_cast<std::uint32_t>(z) * 0x85ebca6bU);
+  // Odd factors far from each other's multiples keep neighbouring lattice points apart; the mixing does the rest.
+  return mix(static_cast<std::uint32_t>(x) * 0x9e3779b1U + static_cast<std::uint32_t>(y) * 0x85ebca77U +
+             static_cast<std::uint32_t>(z) * 0xc2b2ae3dU + seed * 0x27d4eb2fU);
 }
 
 double hashFraction(std::int32_t x, std::int32_t y, std::int32_t z, std::uint32_t seed) {

@@ -23,12 +23,22 @@ constexpr const char* kFooter =
     "  sheaf compare expected.png actual.png -o difference.png\n"
     "\n";
 
+/// `--size=`: the parser would take the next word as the value.
+void refuseEmptyValues(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (word.starts_with("--") && word.ends_with('='))
+      throw Error(ErrorCode::kUsage, fmt::format("{}: the value is missing", word));
+  }
+}
+
 const CLI::App& chosen(const CLI::App& app) {
   const auto subcommands = app.get_subcommands();
   return subcommands.empty() ? app : *subcommands.front();
 }
 
 int parseAndRun(int argc, char** argv) {
+  refuseEmptyValues(argc, argv);
   CLI::App app("Renders meshes to images on the CPU.", "sheaf");
   Run run;
   app.set_help_flag("-h,--help", "Print this help and exit");

@@ -23,10 +23,10 @@ using raster::ImageDifference;
 struct CompareOptions {
   std::string a;
   std::string b;
-  std::string heat_map;
-  std::string max_differing;
-  std::string max_error;
-  std::string min_psnr;
+  std::optional<std::string> heat_map;
+  std::optional<std::string> max_differing;
+  std::optional<std::string> max_error;
+  std::optional<std::string> min_psnr;
   bool json = false;
 };
 
@@ -39,9 +39,9 @@ struct Limits {
 
 Limits limitsOf(const CompareOptions& options) {
   Limits limits;
-  if (!options.max_differing.empty()) limits.differing = parsePixelLimit("--max-differing", options.max_differing);
-  if (!options.max_error.empty()) limits.max_error = parseNumber("--max-error", options.max_error, 0.0, 255.0);
-  if (!options.min_psnr.empty()) limits.min_psnr_db = parseNumber("--min-psnr", options.min_psnr, 0.0, 1000.0);
+  if (options.max_differing) limits.differing = parsePixelLimit("--max-differing", *options.max_differing);
+  if (options.max_error) limits.max_error = parseNumber("--max-error", *options.max_error, 0.0, 255.0);
+  if (options.min_psnr) limits.min_psnr_db = parseNumber("--min-psnr", *options.min_psnr, 0.0, 1000.0);
   if (!limits.differing && !limits.max_error && !limits.min_psnr_db) limits.differing = PixelLimit{};
   return limits;
 }
@@ -101,25 +101,27 @@ std::string reportJson(const ImageDifference& d, const std::vector<std::string>&
   return json.dump(2) + "\n";
 }
 
+void checkHeatMap(const CompareOptions& options) {
+  const std::string& path = *options.heat_map;
+  if (raster::formatOf(path).linear)
+    throw Error(ErrorCode::kUsage, fmt::format("-o {}: a heat map has 8-bit colours; write it as .png", path));
+  raster::checkFormatAvailable(path);
+  checkOutputs({{"-o", path}}, {options.a, options.b});
+}
+
 int runCompare(const CompareOptions& options) {
   const Limits limits = limitsOf(options);
-  if (!options.heat_map.empty()) {
-    if (raster::formatOf(options.heat_map).linear)
-      throw Error(ErrorCode::kUsage,
-                  fmt::format("-o {}: a heat map is a picture of 8-bit colours; write it as .png", options.heat_map));
-    raster::checkFormatAvailable(options.heat_map);
-  }
-  checkOutputs({{"-o", options.heat_map}}, {options.a, options.b});
+  if (options.heat_map) checkHeatMap(options);
   const Image8 a = raster::readImage(options.a);
   const Image8 b = raster::readImage(options.b);
   if (a.width() != b.width() || a.height() != b.height())
     throw Error(ErrorCode::kBadInput, fmt::format("{}: is {}x{} pixels, {} is {}x{}", options.a, a.width(), a.height(),
                                                   options.b, b.width(), b.height()));
   const ImageDifference difference = raster::compareImages(a, b);
-  if (!options.heat_map.empty()) {
+  if (options.heat_map) {
     const Image8 map = raster::heatMap(a, b);
     TaskPool pool;
-    raster::writePicture(options.heat_map, {.srgb = &map}, pool);
+    raster::writePicture(*options.heat_map, {.srgb = &map}, pool);
   }
   const std::vector<std::string> passed = beyond(limits, difference);
   writeStdout(options.json ? reportJson(difference, passed) : reportText(difference, passed));

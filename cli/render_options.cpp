@@ -14,7 +14,8 @@
 namespace sheaf::cli {
 namespace {
 
-constexpr std::string_view kTableOnStdout = "-";
+// What the option parser stores for a flag without a value.
+constexpr std::string_view kBareTimings = "true";
 constexpr int kMaxThreads = 256;
 constexpr int kMaxFrames = 100000;
 
@@ -92,6 +93,13 @@ void understandView(const RenderArguments& arguments, ViewRequest& view) {
     refuse("--fov and --orthographic: a parallel projection has no field of view");
 }
 
+void understandChannels(std::string_view text, RenderRequest& request) {
+  request.want_depth = text == "depth" || text == "depth,ids" || text == "ids,depth";
+  request.want_ids = text == "ids" || text == "depth,ids" || text == "ids,depth";
+  if (!request.want_depth && !request.want_ids)
+    refuse(fmt::format("--channels {}: expected depth, ids or depth,ids", text));
+}
+
 void understandOutput(const RenderArguments& arguments, RenderRequest& request) {
   request.output = arguments.output.value_or("");
   if (arguments.output && request.output.empty()) refuse("-o: the name of the file is empty");
@@ -101,20 +109,14 @@ void understandOutput(const RenderArguments& arguments, RenderRequest& request) 
   const raster::PictureFormat format = file ? raster::formatOf(request.output) : raster::PictureFormat{.name = "PNG"};
   if (request.background && request.background->a < 255 && !format.alpha)
     refuse(fmt::format("--background {}: {} has no alpha channel", *arguments.background, format.name));
-  for (const std::string& channel : arguments.channels) {
-    if (channel == "depth")
-      request.want_depth = true;
-    else if (channel == "ids")
-      request.want_ids = true;
-    else
-      refuse(fmt::format("--channels {}: expected depth, ids or both with a comma between", channel));
-  }
-  if (!arguments.channels.empty() && !format.extra_channels)
+  if (!arguments.channels) return;
+  understandChannels(*arguments.channels, request);
+  if (!format.extra_channels)
     refuse(fmt::format("--channels: only OpenEXR (-o FILE.exr) holds more than colour, not {}", format.name));
 }
 
 void understandMeasuring(const RenderArguments& arguments, RenderRequest& request) {
-  request.table = arguments.timings == kTableOnStdout;
+  request.table = arguments.timings == kBareTimings;
   if (!request.table) request.timings_file = arguments.timings;
   request.trace_file = arguments.trace.value_or("");
   if (arguments.frames) {
@@ -124,83 +126,80 @@ void understandMeasuring(const RenderArguments& arguments, RenderRequest& reques
   }
 }
 
-}  // namespace
-
-void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>& arguments) {
-  RenderArguments& a = *arguments;
-  command.add_option("INPUT", a.input, "A mesh file, or builtin:NAME?key=value&... (see sheaf scenes)")->required();
-  command.add_option("-o,--output", a.output, "PNG, JPEG, EXR, TIFF, HDR ... by its extension; - is PNG to stdout")
+void addPictureOptions(CLI::App& command, RenderArguments& a) {
+  command.add_option("-o,--output", a.output, "PNG, JPEG, EXR, TIFF, HDR ... by the extension; - is PNG to stdout")
       ->type_name("FILE");
   command.add_option("--size", a.size, "Pixels, each side 1 to 16384 (default 1280x720)")->type_name("WxH");
   command
       .add_option("--background", a.background,
-                  "Name, #rgb, #rrggbb, #rrggbbaa or transparent (default: the file's own, else light grey)")
+                  "A name, #rgb, #rrggbb, #rrggbbaa or transparent\n(default: the file's own, else light grey)")
       ->type_name("COLOR");
-
-  command
-      .add_option("--view", a.view,
-                  fmt::format("Look at the whole scene from: {}", fmt::join(scenes::namedViews(), ", ")))
-      ->type_name("NAME")
-      ->group("Camera");
-  command
-      .add_option("--orbit", a.orbit,
-                  "The same from any side, degrees: 0,0 is the front, azimuth grows towards the right, elevation above "
-                  "-90 and below 90")
-      ->type_name("AZ,EL")
-      ->group("Camera");
-  command.add_option("--eye", a.eye, "Look from this point")->type_name("X,Y,Z")->group("Camera");
-  command.add_option("--target", a.target, "... at this one (default: the middle of the scene)")
-      ->type_name("X,Y,Z")
-      ->group("Camera");
-  command.add_option("--camera", a.camera, "A camera of the file, by name or number (see sheaf info)")
-      ->type_name("N|NAME")
-      ->group("Camera");
-  command
-      .add_option("--up", a.up,
-                  "y or z: which axis is up in the file (default y); X,Y,Z: the camera's up direction, with --eye")
-      ->type_name("y|z|X,Y,Z")
-      ->expected(1)
-      ->take_all()
-      ->allow_extra_args(false)
-      ->group("Camera");
-  command.add_option("--fov", a.fov, "Vertical field of view, 1 to 170 degrees (default: the file's camera, else 40)")
-      ->type_name("DEG")
-      ->group("Camera");
-  command
-      .add_flag("--orthographic", a.orthographic,
-                "Parallel projection; with --eye as tall as the picture is at the target")
-      ->group("Camera");
-
   command
       .add_option("--crease", a.crease,
-                  "Edges sharper than this stay sharp where the file has no normals, 0 to 180 (default 60)")
+                  "Edges sharper than this stay sharp where the file has no\nnormals, 0 to 180 (default 60)")
       ->type_name("DEG");
   command
       .add_option("--channels", a.channels,
-                  "Further channels of an EXR: depth (Z, distance along the view), ids (instance_id, triangle_id)")
-      ->type_name("LIST")
-      ->delimiter(',')
-      ->expected(1)
-      ->allow_extra_args(false);
+                  "Further channels of an EXR: depth (Z, distance along the view),\nids (instance_id, triangle_id) or "
+                  "depth,ids")
+      ->type_name("LIST");
   command
-      .add_option("--threads", a.threads, "Number of threads (default: one per core); the image does not depend on it")
+      .add_option("--threads", a.threads,
+                  "Number of threads, 1 to 256 (default: one per core);\nthe image does not depend on it")
       ->type_name("N");
-  command.add_option("--simd", a.simd, "Use this SIMD target (see sheaf --version); the image does not depend on it")
+  command.add_option("--simd", a.simd, "Use this SIMD target (see sheaf --version);\nthe image does not depend on it")
       ->type_name("NAME");
   command.add_flag("--no-patch-culling", a.no_patch_culling,
                    "Transform every vertex: the classic pipeline, to compare with");
   command.add_flag("-q,--quiet", a.quiet, "No warnings on stderr");
+}
 
+void addCameraOptions(CLI::App& command, RenderArguments& a) {
+  const auto add = [&](const char* name, auto& value, const std::string& meaning, const char* type) {
+    return command.add_option(name, value, meaning)->type_name(type)->group("Camera");
+  };
+  const std::vector<std::string>& views = scenes::namedViews();
+  add("--view", a.view, fmt::format("See the whole scene from one of:\n{}", fmt::join(views, ", ")), "NAME");
+  add("--orbit", a.orbit,
+      "The same from any side, degrees: 0,0 is the front, the azimuth\ngrows to the right, the elevation lies between "
+      "-90 and 90",
+      "AZ,EL");
+  add("--eye", a.eye, "Look from this point", "X,Y,Z");
+  add("--target", a.target, "... at this one (default: the middle of the scene)", "X,Y,Z");
+  add("--camera", a.camera, "A camera of the file, by name or number (see sheaf info)", "N|NAME");
+  add("--up", a.up, "y or z: which axis is up in the file (default y);\nX,Y,Z: the camera's up direction, with --eye",
+      "y|z|X,Y,Z")
+      ->expected(1)
+      ->take_all()
+      ->allow_extra_args(false);
+  add("--fov", a.fov, "Vertical field of view, 1 to 170 degrees\n(default: that of the file's camera, else 40)", "DEG");
   command
-      .add_flag("--timings{-}", a.timings,
-                "Print where the time went, stage by stage; --timings=FILE.json writes it as JSON")
+      .add_flag("--orthographic", a.orthographic,
+                "Parallel projection; with --eye as tall as the perspective\npicture is at the target")
+      ->group("Camera");
+}
+
+void addMeasuringOptions(CLI::App& command, RenderArguments& a) {
+  command
+      .add_flag("--timings", a.timings,
+                "Print where the time went, stage by stage;\n--timings=FILE.json writes it as JSON")
       ->group("Measuring");
-  command.add_option("--trace", a.trace, "Write a trace with a track per thread, for Perfetto (ui.perfetto.dev)")
+  command.add_option("--trace", a.trace, "Write a trace with a track per thread, for Perfetto")
       ->type_name("FILE.json")
       ->group("Measuring");
   command.add_option("--frames", a.frames, "Draw the picture N times, report median and spread (default 1)")
       ->type_name("N")
       ->group("Measuring");
+}
+
+}  // namespace
+
+void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>& arguments) {
+  RenderArguments& a = *arguments;
+  command.add_option("INPUT", a.input, "A mesh file, or builtin:NAME?key=value&... (see sheaf scenes)")->required();
+  addPictureOptions(command, a);
+  addCameraOptions(command, a);
+  addMeasuringOptions(command, a);
   command.footer(std::string(kFooter) + kExitCodes);
 }
 

@@ -32,8 +32,8 @@ struct RenderArguments {
   Text crease;
   Text threads;
   bool no_patch_culling = false;
-  std::vector<std::string> channels;
-  std::string timings;  ///< kTableOnStdout, a file, or empty
+  Text channels;
+  std::string timings;  ///< kBareTimings, a file, or empty
   Text trace;
   Text frames;
   Text simd;

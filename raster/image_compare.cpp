@@ -44,7 +44,7 @@ Rgba8 heatColor(int error) {
 
 Rgba8 darkGrey(Rgba8 p) {
   const int luma = (54 * p.r + 183 * p.g + 19 * p.b) / 256;
-  const auto grey = static_cast<std::uint8_t>(luma * p.a / 255 / 4);
+  const auto grey = static_cast<std::uint8_t>(luma * p.a / 255 / 6);
   return {grey, grey, grey, 255};
 }
 

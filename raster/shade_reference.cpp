@@ -48,7 +48,7 @@ double marble(const DVec3& p) {
     turbulence += strength * std::abs(noise(p * scale));
   const double along = p.x + 0.25 * p.y + 0.5 * p.z;
   const double ridge = 1.0 - std::abs(std::sin(kPi * (along + 1.5 * turbulence)));
-  return std::min(1.0, 0.85 * std::pow(ridge, 4.0) + std::pow(0.22 * turbulence, 2.0));
+  return std::min(1.0, 0.3 * std::pow(ridge, 2.0) + 0.55 * std::pow(ridge, 6.0) + 0.12 * turbulence * turbulence);
 }
 
 double wood(const DVec3& p) {

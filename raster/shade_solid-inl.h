@@ -98,11 +98,13 @@ HWY_INLINE VF Marble(VF x, VF y, VF z) {
   const VF t = Turbulence(x, y, z);
   const VF along = hn::Add(hn::Add(x, hn::Mul(z, Constant(0.5F))), hn::Mul(y, Constant(0.25F)));
   const VF wave = SinOfTurns(hn::Mul(hn::Add(along, hn::Mul(t, Constant(1.5F))), Constant(0.5F)));
-  // 1 - |sin| is 1 in the middle of a vein; its fourth power makes the vein thin.
+  // 1 - |sin| is 1 in the middle of a vein: its second power is a broad soft shade, its sixth a thin line.
   const VF ridge = hn::Sub(Constant(1.0F), hn::Abs(wave));
-  const VF vein = hn::Mul(hn::Mul(ridge, ridge), hn::Mul(ridge, ridge));
-  const VF cloud = hn::Mul(t, Constant(0.22F));
-  return Clamped(hn::Add(hn::Mul(vein, Constant(0.85F)), hn::Mul(cloud, cloud)), 0.0F, 1.0F);
+  const VF soft = hn::Mul(ridge, ridge);
+  const VF thin = hn::Mul(hn::Mul(soft, soft), soft);
+  const VF cloud = hn::Mul(hn::Mul(t, t), Constant(0.12F));
+  const VF share = hn::Add(hn::Add(hn::Mul(soft, Constant(0.3F)), hn::Mul(thin, Constant(0.55F))), cloud);
+  return Clamped(share, 0.0F, 1.0F);
 }
 
 /// Share of the second colour: rings about the y axis, one per unit, each turning slowly dark and abruptly light again;

@@ -1,0 +1,192 @@
+#include "grouping/quadric.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <limits>
+
+#include "grouping/open_edges.h"
+
+namespace sheaf::grouping {
+namespace {
+
+constexpr double kNoAltitude = std::numeric_limits<double>::infinity();
+
+struct FacePlane {
+  DVec3 normal{0.0};  // unit, or 0 for a face without area
+  double altitude = 0.0;
+};
+
+FacePlane facePlane(const mesh::Mesh& mesh, const mesh::Triangle& t) {
+  const DVec3 a(mesh.positions[t[0]]), b(mesh.positions[t[1]]), c(mesh.positions[t[2]]);
+  const DVec3 ab = b - a, bc = c - b, ca = a - c;
+  const DVec3 normal = glm::cross(ab, -ca);
+  const double twice_area = glm::length(normal);
+  if (!(twice_area > 0.0)) return {};
+  const double longest = std::sqrt(std::max({glm::dot(ab, ab), glm::dot(bc, bc), glm::dot(ca, ca)}));
+  return {normal / twice_area, twice_area / longest};
+}
+
+void addBoundaryPlanes(const mesh::Mesh& mesh, double weight, std::vector<Sym3>& quadrics) {
+  for (const OpenEdge& edge : findOpenEdges(mesh)) {
+    const FacePlane face = facePlane(mesh, mesh.triangles[edge.face]);
+    const DVec3 along = DVec3(mesh.positions[edge.b]) - DVec3(mesh.positions[edge.a]);
+    const DVec3 upright = glm::cross(along, face.normal);
+    const double length = glm::length(upright);
+    if (!(length > 0.0)) continue;
+    quadrics[edge.a].addOuter(upright / length, weight);
+    quadrics[edge.b].addOuter(upright / length, weight);
+  }
+}
+
+// Smallest altitude of the faces around each vertex; kNoAltitude without faces.
+std::vector<double> smallestAltitudes(const mesh::Mesh& mesh) {
+  std::vector<double> altitude(mesh.vertexCount(), kNoAltitude);
+  for (const mesh::Triangle& t : mesh.triangles) {
+    const double h = facePlane(mesh, t).altitude;
+    for (const std::uint32_t v : t) altitude[v] = std::min(altitude[v], h);
+  }
+  return altitude;
+}
+
+bool isPositiveDefinite(const Sym3& m) {
+  return m.xx > 0.0 && m.xx * m.yy - m.xy * m.xy > 0.0 && m.determinant() > 0.0;
+}
+
+// R with no half-axis above r_max. Most vertices need no eigenvectors: either every half-axis is limited, which leaves
+// a sphere, or none is.
+Sym3 limitedReach(const Sym3& a, double eps, double r_max) {
+  if (!(r_max > 0.0) || eps == 0.0) return {};
+  const double floor = (eps / r_max) * (eps / r_max);
+  if (a.trace() <= floor) return Sym3::scaledIdentity(r_max * r_max);
+  Sym3 above = a;
+  above.xx -= floor, above.yy -= floor, above.zz -= floor;
+  if (isPositiveDefinite(above)) {
+    Sym3 r = inverse(a);
+    for (double* entry : {&r.xx, &r.xy, &r.xz, &r.yy, &r.yz, &r.zz}) *entry *= eps * eps;
+    return r;
+  }
+  Eigen3 e = eigenDecomposition(a);
+  for (int k = 0; k < 3; ++k) e.values[k] = eps * eps / std::max(e.values[k], floor);
+  return compose(e);
+}
+
+std::vector<Sym3> safeEllipsoids(const mesh::Mesh& mesh, double eps) {
+  std::vector<Sym3> quadrics = vertexQuadrics(mesh, kBoundaryWeight);
+  const std::vector<double> altitude = smallestAltitudes(mesh);
+  for (std::size_t v = 0; v < quadrics.size(); ++v)
+    quadrics[v] = altitude[v] == kNoAltitude ? Sym3::scaledIdentity(eps * eps)
+                                             : limitedReach(quadrics[v], eps, kSafeReach * altitude[v]);
+  return quadrics;
+}
+
+// A of every vertex with the degenerate ones replaced by small spheres.
+std::vector<Sym3> regularQuadrics(const mesh::Mesh& mesh) {
+  const std::vector<Sym3> unweighted = vertexQuadrics(mesh, 1.0);
+  std::vector<Sym3> quadrics = vertexQuadrics(mesh, kBoundaryWeight);
+  for (std::size_t v = 0; v < quadrics.size(); ++v) {
+    const DVec3 lambda = eigenDecomposition(unweighted[v]).values;
+    const bool isolated = lambda[0] == 0.0;
+    if (isolated)
+      quadrics[v] = Sym3::scaledIdentity(1.0);
+    else if (lambda[2] <= kDegenerateRatio * lambda[0])
+      quadrics[v] = Sym3::scaledIdentity(1.0 / (kDegenerateRadius * kDegenerateRadius));
+  }
+  return quadrics;
+}
+
+// [PG] eq. 7: the factor for A that brings each half-axis within 45 degrees of an edge down to half that edge. "Axis
+// length" is read as the half-axis.
+double halfEdgeScale(const Eigen3& e, double eps, const DVec3& edge) {
+  const double length2 = glm::dot(edge, edge);
+  double scale = 1.0;
+  for (int k = 0; k < 3; ++k) {
+    const double along = glm::dot(e.vectors[k], edge);
+    if (along * along < 0.5 * length2 || length2 == 0.0) continue;
+    scale = std::max(scale, 4.0 * eps * eps / (e.values[k] * length2));
+  }
+  return scale;
+}
+
+std::vector<Sym3> paperEllipsoids(const mesh::Mesh& mesh, double eps) {
+  std::vector<Sym3> quadrics = regularQuadrics(mesh);
+  std::vector<Eigen3> eigen(quadrics.size());
+  for (std::size_t v = 0; v < quadrics.size(); ++v) eigen[v] = eigenDecomposition(quadrics[v]);
+  std::vector<double> scale(quadrics.size(), 1.0);
+  for (const mesh::Triangle& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+      const DVec3 edge = DVec3(mesh.positions[b]) - DVec3(mesh.positions[a]);
+      scale[a] = std::max(scale[a], halfEdgeScale(eigen[a], eps, edge));
+      scale[b] = std::max(scale[b], halfEdgeScale(eigen[b], eps, edge));
+    }
+  for (std::size_t v = 0; v < quadrics.size(); ++v) {
+    for (int k = 0; k < 3; ++k) eigen[v].values[k] = eps * eps / (scale[v] * eigen[v].values[k]);
+    quadrics[v] = compose(eigen[v]);
+  }
+  return quadrics;
+}
+
+}  // namespace
+
+double Sym3::determinant() const {
+  return xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+}
+
+void Sym3::addOuter(const DVec3& n, double weight) {
+  const DVec3 w = weight * n;
+  xx += w.x * n.x, xy += w.x * n.y, xz += w.x * n.z;
+  yy += w.y * n.y, yz += w.y * n.z, zz += w.z * n.z;
+}
+
+Sym3 inverse(const Sym3& m) {
+  const double f = 1.0 / m.determinant();
+  return {f * (m.yy * m.zz - m.yz * m.yz), f * (m.xz * m.yz - m.xy * m.zz), f * (m.xy * m.yz - m.xz * m.yy),
+          f * (m.xx * m.zz - m.xz * m.xz), f * (m.xy * m.xz - m.xx * m.yz), f * (m.xx * m.yy - m.xy * m.xy)};
+}
+
+Eigen3 eigenDecomposition(const Sym3& m) {
+  Eigen::Matrix3d matrix;
+  matrix << m.xx, m.xy, m.xz, m.xy, m.yy, m.yz, m.xz, m.yz, m.zz;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.compute(matrix);
+  Eigen3 e;
+  for (int k = 0; k < 3; ++k) {  // Eigen's order is ascending
+    e.values[k] = std::max(0.0, solver.eigenvalues()[2 - k]);
+    for (int row = 0; row < 3; ++row) e.vectors[k][row] = solver.eigenvectors()(row, 2 - k);
+  }
+  return e;
+}
+
+Sym3 compose(const Eigen3& e) {
+  Sym3 m;
+  for (int k = 0; k < 3; ++k) m.addOuter(e.vectors[k], e.values[k]);
+  return m;
+}
+
+std::vector<Sym3> vertexQuadrics(const mesh::Mesh& mesh, double boundary_weight) {
+  std::vector<Sym3> quadrics(mesh.vertexCount());
+  for (const mesh::Triangle& t : mesh.triangles) {
+    const FacePlane face = facePlane(mesh, t);
+    if (face.altitude == 0.0) continue;
+    for (const std::uint32_t v : t) quadrics[v].addOuter(face.normal);
+  }
+  addBoundaryPlanes(mesh, boundary_weight, quadrics);
+  return quadrics;
+}
+
+std::vector<Sym3> vertexEllipsoids(const mesh::Mesh& mesh, double eps, Limit limit) {
+  assert(eps >= 0.0 && std::isfinite(eps));
+  return limit == Limit::kSafe ? safeEllipsoids(mesh, eps) : paperEllipsoids(mesh, eps);
+}
+
+double placeOnLine(const Sym3& a, const DVec3& from_vertex, const DVec3& direction) {
+  const DVec3 y = a.times(direction);
+  const double ly = glm::dot(direction, y);
+  const double ll = glm::dot(direction, direction);
+  if (ly <= 1e-12 * a.trace() * ll) return -glm::dot(from_vertex, direction) / ll;
+  return -glm::dot(from_vertex, y) / ly;
+}
+
+}  // namespace sheaf::grouping

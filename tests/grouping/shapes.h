@@ -1,0 +1,88 @@
+// tests/grouping/shapes: meshes and point sets for the grouping tests.
+#pragma once
+
+#include <random>
+
+#include "mesh/mesh.h"
+
+namespace sheaf::grouping {
+
+inline mesh::Mesh randomPoints(std::mt19937& rng, std::uint32_t count, const Vec3& size = Vec3(1.0F)) {
+  std::uniform_real_distribution<float> unit(0.0F, 1.0F);
+  mesh::Mesh mesh;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const float x = unit(rng), y = unit(rng), z = unit(rng);
+    mesh.positions.push_back(size * Vec3(x, y, z));
+  }
+  return mesh;
+}
+
+// Positions on a coarse lattice: many exact duplicates, coplanar and collinear triples.
+inline mesh::Mesh latticePoints(std::mt19937& rng, std::uint32_t count, int steps) {
+  std::uniform_int_distribution<int> cell(0, steps);
+  mesh::Mesh mesh;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const int x = cell(rng), y = cell(rng), z = cell(rng);
+    mesh.positions.push_back(Vec3(x, y, z) * 0.25F);
+  }
+  return mesh;
+}
+
+// Random positions and random triangles over them: non-manifold, slivers, faces through each other.
+inline mesh::Mesh triangleSoup(std::mt19937& rng, std::uint32_t vertices, std::uint32_t faces) {
+  mesh::Mesh mesh = randomPoints(rng, vertices);
+  std::uniform_int_distribution<std::uint32_t> pick(0, vertices - 1);
+  for (std::uint32_t f = 0; f < faces; ++f) {
+    const std::uint32_t a = pick(rng), b = pick(rng), c = pick(rng);
+    mesh.triangles.push_back({a, b, c});
+  }
+  return mesh;
+}
+
+// A closed, lumpy ball of rings x segments quads, its vertices shaken by `noise`.
+inline mesh::Mesh lumpyBall(std::mt19937& rng, std::uint32_t rings, std::uint32_t segments, float noise = 0.0F) {
+  std::uniform_real_distribution<float> shake(-noise, noise);
+  mesh::Mesh mesh;
+  const auto add = [&](double polar, double around) {
+    const double r = 1.0 + 0.2 * std::sin(3.0 * around) * std::sin(polar) + 0.15 * std::cos(4.0 * polar);
+    const float dx = shake(rng), dy = shake(rng), dz = shake(rng);
+    mesh.positions.push_back(Vec3(DVec3(r * std::sin(polar) * std::cos(around), 1.3 * r * std::cos(polar),
+                                        0.7 * r * std::sin(polar) * std::sin(around))) +
+                             Vec3(dx, dy, dz));
+  };
+  add(0.0, 0.0);
+  for (std::uint32_t i = 1; i < rings; ++i)
+    for (std::uint32_t k = 0; k < segments; ++k) add(kPi * i / rings, 2.0 * kPi * k / segments);
+  add(kPi, 0.0);
+  const auto at = [&](std::uint32_t ring, std::uint32_t k) { return 1 + (ring - 1) * segments + k % segments; };
+  const auto last = static_cast<std::uint32_t>(mesh.positions.size()) - 1;
+  for (std::uint32_t k = 0; k < segments; ++k) {
+    mesh.triangles.push_back({0, at(1, k + 1), at(1, k)});
+    for (std::uint32_t i = 1; i + 1 < rings; ++i) {
+      mesh.triangles.push_back({at(i, k), at(i, k + 1), at(i + 1, k)});
+      mesh.triangles.push_back({at(i, k + 1), at(i + 1, k + 1), at(i + 1, k)});
+    }
+    mesh.triangles.push_back({at(rings - 1, k), at(rings - 1, k + 1), last});
+  }
+  return mesh;
+}
+
+// A hilly field with an open border.
+inline mesh::Mesh hills(std::mt19937& rng, std::uint32_t side, float height = 0.2F) {
+  std::uniform_real_distribution<float> unit(0.0F, 1.0F);
+  mesh::Mesh mesh;
+  for (std::uint32_t y = 0; y < side; ++y)
+    for (std::uint32_t x = 0; x < side; ++x) {
+      const float dx = 0.4F * unit(rng), dy = 0.4F * unit(rng), up = height * unit(rng);
+      mesh.positions.emplace_back((float(x) + dx) / float(side), up, (float(y) + dy) / float(side));
+    }
+  for (std::uint32_t y = 0; y + 1 < side; ++y)
+    for (std::uint32_t x = 0; x + 1 < side; ++x) {
+      const std::uint32_t a = y * side + x, b = a + 1, c = a + side, d = c + 1;
+      mesh.triangles.push_back({a, c, b});
+      mesh.triangles.push_back({b, c, d});
+    }
+  return mesh;
+}
+
+}  // namespace sheaf::grouping

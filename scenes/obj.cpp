@@ -1,7 +1,7 @@
 // OBJ, with materials by tinyobjloader.
 //
-// The geometry is read here, since tinyobjloader 2.0rc10 turns a NaN into 0, refuses corners of the form `1//`, keeps the
-// corner count of a face in a byte, knows no continuation lines, and tells neither the line of a bad index nor that
+// The geometry is read here, since tinyobjloader 2.0rc10 turns a NaN into 0, refuses corners of the form `1//`, keeps
+// the corner count of a face in a byte, knows no continuation lines, and tells neither the line of a bad index nor that
 // there is one.
 #include <fmt/format.h>
 #include <tiny_obj_loader.h>
@@ -74,13 +74,20 @@ class ObjParser {
   ObjFile parse() {
     while (!scanner_.atEnd()) {
       const std::string_view keyword = scanner_.word("a keyword");
-      if (keyword == "v") parsePosition();
-      else if (keyword == "vt") parseTexcoord();
-      else if (keyword == "vn") parseNormal();
-      else if (keyword == "f" || keyword == "fo") parseFace();
-      else if (keyword == "usemtl") useMaterial(std::string(scanner_.restOfLine()));
-      else if (keyword == "mtllib") file_.libraries.emplace_back(scanner_.restOfLine());
-      else if (keyword == "l" || keyword == "p") ++lines_and_points_;
+      if (keyword == "v")
+        parsePosition();
+      else if (keyword == "vt")
+        parseTexcoord();
+      else if (keyword == "vn")
+        parseNormal();
+      else if (keyword == "f" || keyword == "fo")
+        parseFace();
+      else if (keyword == "usemtl")
+        useMaterial(std::string(scanner_.restOfLine()));
+      else if (keyword == "mtllib")
+        file_.libraries.emplace_back(scanner_.restOfLine());
+      else if (keyword == "l" || keyword == "p")
+        ++lines_and_points_;
       scanner_.skipLine();
     }
     if (any_color_)
@@ -369,7 +376,8 @@ class MaterialLibrary {
     material.shininess = source.shininess >= 1.0F ? std::min(source.shininess, 4096.0F) : 1.0F;
     if (source.dissolve < 1.0F) warn(fmt::format("material '{}' is drawn opaque", printable(material_name)));
     material.base_color_texture.texture = textureOf(source.diffuse_texname);
-    if (source.diffuse_texopt.clamp) material.base_color_texture.wrap_u = material.base_color_texture.wrap_v = Wrap::kClamp;
+    if (source.diffuse_texopt.clamp)
+      material.base_color_texture.wrap_u = material.base_color_texture.wrap_v = Wrap::kClamp;
     return material;
   }
 

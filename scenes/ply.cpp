@@ -211,14 +211,22 @@ class BinaryValues {
   template <typename To>
   To read(Type type) {
     switch (type) {
-      case Type::kInt8: return readAs<std::int8_t, To>();
-      case Type::kUint8: return readAs<std::uint8_t, To>();
-      case Type::kInt16: return readAs<std::int16_t, To>();
-      case Type::kUint16: return readAs<std::uint16_t, To>();
-      case Type::kInt32: return readAs<std::int32_t, To>();
-      case Type::kUint32: return readAs<std::uint32_t, To>();
-      case Type::kFloat: return readAs<float, To>();
-      case Type::kDouble: break;
+      case Type::kInt8:
+        return readAs<std::int8_t, To>();
+      case Type::kUint8:
+        return readAs<std::uint8_t, To>();
+      case Type::kInt16:
+        return readAs<std::int16_t, To>();
+      case Type::kUint16:
+        return readAs<std::uint16_t, To>();
+      case Type::kInt32:
+        return readAs<std::int32_t, To>();
+      case Type::kUint32:
+        return readAs<std::uint32_t, To>();
+      case Type::kFloat:
+        return readAs<float, To>();
+      case Type::kDouble:
+        break;
     }
     return readAs<double, To>();
   }
@@ -234,11 +242,10 @@ enum Slot : std::uint8_t { kX, kY, kZ, kNx, kNy, kNz, kS, kT, kRed, kGreen, kBlu
 
 Slot slotOf(const std::string& name) {
   constexpr std::array<std::pair<std::string_view, Slot>, 24> kNames = {
-      {{"x", kX},           {"y", kY},           {"z", kZ},         {"nx", kNx},       {"ny", kNy},
-       {"nz", kNz},         {"s", kS},           {"t", kT},         {"u", kS},         {"v", kT},
-       {"texture_u", kS},   {"texture_v", kT},   {"texture_s", kS}, {"texture_t", kT}, {"red", kRed},
-       {"green", kGreen},   {"blue", kBlue},     {"alpha", kAlpha}, {"r", kRed},       {"g", kGreen},
-       {"b", kBlue},        {"a", kAlpha},       {"texcoord_s", kS}, {"texcoord_t", kT}}};
+      {{"x", kX},         {"y", kY},         {"z", kZ},     {"nx", kNx},       {"ny", kNy},        {"nz", kNz},
+       {"s", kS},         {"t", kT},         {"u", kS},     {"v", kT},         {"texture_u", kS},  {"texture_v", kT},
+       {"texture_s", kS}, {"texture_t", kT}, {"red", kRed}, {"green", kGreen}, {"blue", kBlue},    {"alpha", kAlpha},
+       {"r", kRed},       {"g", kGreen},     {"b", kBlue},  {"a", kAlpha},     {"texcoord_s", kS}, {"texcoord_t", kT}}};
   for (const auto& [known, slot] : kNames)
     if (known == name) return slot;
   return kSlotCount;
@@ -255,7 +262,8 @@ float colorValue(float value, Type type, bool is_alpha) {
       const float unit = std::clamp(value, 0.0F, 65535.0F) / 65535.0F;
       return is_alpha ? unit : linearFromSrgb(unit);
     }
-    default: return value >= 0.0F && value <= 1.0F ? value : (value > 1.0F ? 1.0F : 0.0F);
+    default:
+      return value >= 0.0F && value <= 1.0F ? value : (value > 1.0F ? 1.0F : 0.0F);
   }
 }
 

@@ -49,7 +49,8 @@ void PolygonBuilder::reportTo(std::vector<std::string>& warnings, std::string_vi
   if (too_few_corners_ > 0)
     warnings.push_back(fmt::format("{}: {} faces with fewer than 3 corners left out", name, too_few_corners_));
   if (tangled_ > 0)
-    warnings.push_back(fmt::format("{}: {} polygons that cross themselves or are flat lines cut as fans", name, tangled_));
+    warnings.push_back(
+        fmt::format("{}: {} polygons that cross themselves or are flat lines cut as fans", name, tangled_));
 }
 
 }  // namespace sheaf::scenes

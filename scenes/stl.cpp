@@ -48,14 +48,16 @@ void appendTriangle(mesh::Mesh& mesh) {
 
 mesh::Mesh readBinary(std::string_view bytes, std::string_view name, std::vector<std::string>& warnings) {
   if (bytes.size() < kBinaryHeader)
-    refuse(name, fmt::format("is neither ascii STL nor as long as the header of a binary one ({} bytes)", bytes.size()));
+    refuse(name,
+           fmt::format("is neither ascii STL nor as long as the header of a binary one ({} bytes)", bytes.size()));
   const std::uint32_t count = littleEndian32(bytes.data() + kBinaryHeader - 4);
   if (binarySize(bytes) > bytes.size())
     refuse(name, fmt::format("the header promises {} triangles, that is {} bytes, but the file has {}", count,
                              binarySize(bytes), bytes.size()));
   if (count > UINT32_MAX / 3) refuse(name, fmt::format("{} triangles are too many", count));
   if (binarySize(bytes) < bytes.size())
-    warnings.push_back(fmt::format("{}: {} bytes after the last triangle ignored", name, bytes.size() - binarySize(bytes)));
+    warnings.push_back(
+        fmt::format("{}: {} bytes after the last triangle ignored", name, bytes.size() - binarySize(bytes)));
   mesh::Mesh mesh;
   mesh.positions.reserve(std::size_t{3} * count);
   mesh.triangles.reserve(count);

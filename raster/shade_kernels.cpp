@@ -38,7 +38,7 @@ struct Block {
 
 struct SurfaceJob;
 using BlockKernel = std::uint64_t (*)(const SurfaceJob& job, Block& block, std::uint64_t pending,
-                                      BlockTriangles& fetched);
+                                      BlockFragments& fragments, CornerNormals& last);
 
 /// What is the same for all pixels of a surface.
 struct SurfaceJob {
@@ -52,63 +52,8 @@ struct SurfaceJob {
   Vec3 ambient_rise;                  ///< from there to straight up
 };
 
-/// Barycentric coordinates of each pixel centre, perspective-correct.
-HWY_INLINE void Barycentrics(const TriangleLanes& lanes, VI x, VI y, VF& b0, VF& b1, VF& b2) {
-  const DF d;
-  const VI ref = hn::BitCast(DI(), lanes.words(kRef));
-  const VF dx = hn::ConvertTo(d, hn::Sub(x, hn::ShiftRight<16>(hn::ShiftLeft<16>(ref))));
-  const VF dy = hn::ConvertTo(d, hn::Sub(y, hn::ShiftRight<16>(ref)));
-  const auto plane = [&](int corner) {
-    const VF along_x = hn::Mul(lanes.floats(kUx + corner), dx);
-    const VF along_y = hn::Mul(lanes.floats(kUy + corner), dy);
-    return hn::Add(hn::Add(lanes.floats(kU0 + corner), along_x), along_y);
-  };
-  const VF u0 = plane(0);
-  const VF u1 = plane(1);
-  const VF u2 = plane(2);
-  const VF inverse_sum = hn::Div(Constant(1.0F), hn::Add(hn::Add(u0, u1), u2));
-  b0 = hn::Mul(u0, inverse_sum);
-  b1 = hn::Mul(u1, inverse_sum);
-  b2 = hn::Mul(u2, inverse_sum);
-}
-
-HWY_INLINE VF Blend(VF b0, VF b1, VF b2, VF a0, VF a1, VF a2) {
-  return Dot(b0, b1, b2, a0, a1, a2);
-}
-
-/// Interpolated object-space normal of any length.
-HWY_INLINE void SmoothNormal(const TriangleLanes& lanes, VF b0, VF b1, VF b2, VF& nx, VF& ny, VF& nz) {
-  const auto component = [&](int axis) {
-    return Blend(b0, b1, b2, lanes.normals(0, axis), lanes.normals(1, axis), lanes.normals(2, axis));
-  };
-  nx = component(0);
-  ny = component(1);
-  nz = component(2);
-}
-
-/// The triangle's own object-space normal, of any length.
-HWY_INLINE void FlatNormal(const Surface& surface, const TriangleLanes& lanes, VF& nx, VF& ny, VF& nz) {
-  const DF d;
-  const VI v0 = lanes.vertices(0);
-  const VI v1 = lanes.vertices(1);
-  const VI v2 = lanes.vertices(2);
-  const auto edge = [&](int axis, VI to) {
-    const float* position = surface.position_object[static_cast<std::size_t>(axis)];
-    return hn::Sub(hn::GatherIndex(d, position, to), hn::GatherIndex(d, position, v0));
-  };
-  const VF ax = edge(0, v1);
-  const VF ay = edge(1, v1);
-  const VF az = edge(2, v1);
-  const VF bx = edge(0, v2);
-  const VF by = edge(1, v2);
-  const VF bz = edge(2, v2);
-  nx = hn::Sub(hn::Mul(ay, bz), hn::Mul(az, by));
-  ny = hn::Sub(hn::Mul(az, bx), hn::Mul(ax, bz));
-  nz = hn::Sub(hn::Mul(ax, by), hn::Mul(ay, bx));
-}
-
 /// Object to world space, unit length, turned round on back faces. A vanishing normal stays 0.
-HWY_INLINE void ToWorldNormal(const SurfaceJob& job, const TriangleLanes& lanes, VF& nx, VF& ny, VF& nz) {
+HWY_INLINE void ToWorldNormal(const SurfaceJob& job, VU flip, VF& nx, VF& ny, VF& nz) {
   const float* m = job.world_from_object_normal;
   const auto component = [&](int row) {
     return Dot(Constant(m[row]), Constant(m[3 + row]), Constant(m[6 + row]), nx, ny, nz);
@@ -117,8 +62,7 @@ HWY_INLINE void ToWorldNormal(const SurfaceJob& job, const TriangleLanes& lanes,
   const VF wy = component(1);
   const VF wz = component(2);
   const VF inverse_length = InverseLength(Dot(wx, wy, wz, wx, wy, wz));
-  const VF flip = hn::BitCast(DF(), hn::ShiftLeft<31>(lanes.words(kBackFace)));
-  const VF scale = hn::Xor(inverse_length, flip);
+  const VF scale = hn::Xor(inverse_length, hn::BitCast(DF(), flip));
   nx = hn::Mul(wx, scale);
   ny = hn::Mul(wy, scale);
   nz = hn::Mul(wz, scale);
@@ -149,12 +93,11 @@ HWY_INLINE VF Presentable(VF color) {
 
 HWY_INLINE void StoreColors(std::uint64_t lanes, VF r, VF g, VF b, Block& block, std::size_t begin) {
   const DF d;
-  const std::uint64_t lane_mask = (std::uint64_t{1} << hn::Lanes(d)) - 1;
   float* to_r = block.colors.r + begin;
   float* to_g = block.colors.g + begin;
   float* to_b = block.colors.b + begin;
   // Not for the sake of the other lanes only: what a masked store wrote cannot be forwarded to the load that encodes.
-  if (lanes == (block.covered >> begin & lane_mask)) {
+  if (lanes == (block.covered >> begin & AllLanes())) {
     hn::Store(Presentable(r), d, to_r);
     hn::Store(Presentable(g), d, to_g);
     hn::Store(Presentable(b), d, to_b);
@@ -168,38 +111,27 @@ HWY_INLINE void StoreColors(std::uint64_t lanes, VF r, VF g, VF b, Block& block,
 
 /// Shades those of the pending pixels (bits in tileIndex() order) that show the job's surface; returns the rest.
 template <ShadeModel kModel>
-std::uint64_t ShadeBlock(const SurfaceJob& job, Block& block, std::uint64_t pending, BlockTriangles& fetched) {
+std::uint64_t ShadeBlock(const SurfaceJob& job, Block& block, std::uint64_t pending, BlockFragments& fragments,
+                         CornerNormals& last) {
   const DF d;
-  const DI di;
-  const std::uint64_t mine =
-      FetchTriangles(job.scene->triangles.data(), block.triangle, job.surface_id, pending, fetched);
-  if constexpr (kModel == ShadeModel::kSmooth) FetchNormals(job.surface->normal, fetched);
+  const std::uint64_t mine = FetchFragments<false>(job.scene->triangles.data(), block.triangle, job.surface_id, pending,
+                                                   block.x, block.y, fragments);
+  if constexpr (kModel == ShadeModel::kSmooth) FetchSmoothNormals(job.surface->normal, fragments, last);
+  if constexpr (kModel == ShadeModel::kFlat) FetchFlatNormals(job.surface->position_object, fragments);
 
-  constexpr std::size_t kRowMask = kBlockSize - 1;
-  const VI lane = hn::Iota(di, 0);
-  const VI lane_x = hn::Add(hn::And(lane, hn::Set(di, kRowMask)), hn::Set(di, block.x));
-  const VI lane_y = hn::Add(hn::ShiftRight<3>(lane), hn::Set(di, block.y));
   for (std::size_t begin = 0; begin < kBlockPixels; begin += hn::Lanes(d)) {
-    if (fetched.lanes[begin] == 0) continue;
-    const TriangleLanes lanes{fetched, begin};
-    const VI x = hn::Add(lane_x, hn::Set(di, static_cast<std::int32_t>(begin & kRowMask)));
-    const VI y = hn::Add(lane_y, hn::Set(di, static_cast<std::int32_t>(begin / kBlockSize)));
-    VF b0, b1, b2;
-    Barycentrics(lanes, x, y, b0, b1, b2);
-
+    if (fragments.lanes[begin] == 0) continue;
     VF r = Constant(job.material->base_color.x);
     VF g = Constant(job.material->base_color.y);
     VF b = Constant(job.material->base_color.z);
     if constexpr (kModel != ShadeModel::kUnlit) {
-      VF nx, ny, nz;
-      if constexpr (kModel == ShadeModel::kSmooth)
-        SmoothNormal(lanes, b0, b1, b2, nx, ny, nz);
-      else
-        FlatNormal(*job.surface, lanes, nx, ny, nz);
-      ToWorldNormal(job, lanes, nx, ny, nz);
+      VF nx = hn::Load(d, fragments.normal[0] + begin);
+      VF ny = hn::Load(d, fragments.normal[1] + begin);
+      VF nz = hn::Load(d, fragments.normal[2] + begin);
+      ToWorldNormal(job, hn::Load(DU(), fragments.flip + begin), nx, ny, nz);
       Illuminate(job, nx, ny, nz, r, g, b);
     }
-    StoreColors(fetched.lanes[begin], r, g, b, block, begin);
+    StoreColors(fragments.lanes[begin], r, g, b, block, begin);
   }
   return pending & ~mine;
 }
@@ -254,13 +186,35 @@ void PrefetchTriangles(const ShadeTriangle* triangles, const std::uint32_t* ids)
   constexpr int kLast = kBlockPixels - 1;
   if (ids[0] == ids[kBlockSize - 1] && ids[0] == ids[kLast]) return;  // most likely one triangle
   const DU du;
-  const VU first = hn::Set(du, 0);
   alignas(64) std::uint32_t safe[kMaxLanes];
   for (std::size_t begin = 0; begin < kBlockPixels; begin += hn::Lanes(du)) {
     const VU id = hn::Load(du, ids + begin);
-    hn::Store(hn::IfThenElse(hn::Eq(id, hn::Set(du, kNoTriangle)), first, id), du, safe);
+    hn::Store(hn::IfThenElse(hn::Eq(id, hn::Set(du, kNoTriangle)), hn::Zero(du), id), du, safe);
     for (std::size_t i = 0; i < hn::Lanes(du); ++i) hwy::Prefetch(triangles + safe[i]);
   }
+}
+
+/// Asks for the lines of an image that a block will be written to. Stores retire in order: without this, all that the
+/// kernels write waits for lines of the image to arrive.
+template <typename Pixel>
+void PrefetchRows(Image<Pixel>* image, int x, int y) {
+  if (image == nullptr || x >= image->width()) return;
+  for (int row = y; row < std::min(y + kBlockSize, image->height()); ++row)
+    for (std::size_t byte = 0; byte < kBlockSize * sizeof(Pixel); byte += 64)
+      hwy::Prefetch(reinterpret_cast<const char*>(image->row(row) + x) + byte);
+}
+
+void PrefetchBlockRows(const ColorTarget& target, int x, int y) {
+  PrefetchRows(target.srgb, x, y);
+  PrefetchRows(target.linear, x, y);
+}
+
+/// Where a block lies in its tile.
+constexpr int blockX(int index) {
+  return index % kBlocksPerTileSide * kBlockSize;
+}
+constexpr int blockY(int index) {
+  return index / kBlocksPerTileSide * kBlockSize;
 }
 
 /// Background as both images hold it.
@@ -338,12 +292,18 @@ ShadeCounts ShadeTile(const ShadeScene& scene, const TileVisibility& tile, int x
   const Background background = MakeBackground(scene.background);
   ShadeCounts counts;
   SurfaceJob job{};
-  BlockTriangles fetched;
-  fetched.forget();
+  BlockFragments fragments;
+  CornerNormals last;
   Block block{};
+  constexpr int kRowsAhead = 4;  // blocks
+  for (int index = 0; index < kRowsAhead; ++index) PrefetchBlockRows(target, x0 + blockX(index), y0 + blockY(index));
   for (int index = 0; index < kBlocksPerTile; ++index) {
-    block.x = x0 + index % kBlocksPerTileSide * kBlockSize;
-    block.y = y0 + index / kBlocksPerTileSide * kBlockSize;
+    block.x = x0 + blockX(index);
+    block.y = y0 + blockY(index);
+    if (index + 1 < kBlocksPerTile)
+      PrefetchTriangles(scene.triangles.data(), tile.triangle + (index + 1) * kBlockPixels);
+    if (index + kRowsAhead < kBlocksPerTile)
+      PrefetchBlockRows(target, x0 + blockX(index + kRowsAhead), y0 + blockY(index + kRowsAhead));
     block.triangle = tile.triangle + index * kBlockPixels;
     if (block.x >= width || block.y >= height) continue;
     const std::uint64_t inside = PixelsInside(width - block.x, height - block.y);
@@ -355,13 +315,12 @@ ShadeCounts ShadeTile(const ShadeScene& scene, const TileVisibility& tile, int x
       FillBlock(block, background, target);
       continue;
     }
-    if (index + 1 < kBlocksPerTile) PrefetchTriangles(scene.triangles.data(), block.triangle + kBlockPixels);
-    for (std::uint64_t pending = covered; pending != 0; pending = job.kernel(job, block, pending, fetched)) {
+    for (std::uint64_t pending = covered; pending != 0; pending = job.kernel(job, block, pending, fragments, last)) {
       const std::uint32_t first_id = block.triangle[std::countr_zero(pending)];
       const std::uint32_t surface_id = scene.triangles[first_id].surface;
       if (job.scene == nullptr || job.surface_id != surface_id) {
         job = MakeSurfaceJob(scene, surface_id);
-        fetched.forget();
+        last.triangle = kNoTriangle;
       }
     }
     if (target.srgb != nullptr) WriteSrgb(block, background, *target.srgb);

@@ -62,11 +62,16 @@ HWY_INLINE MF MaskOfBits(std::uint64_t bits) {
 }
 
 HWY_INLINE std::uint64_t BitsOfMask(MF mask) {
+  // Read back as it was written: a wider load would have to wait for the store.
   alignas(8) std::uint8_t bytes[8] = {};
   hn::StoreMaskBits(DF(), mask, bytes);
-  std::uint64_t bits;
-  std::memcpy(&bits, bytes, sizeof bits);
-  return bits & ((std::uint64_t{1} << hn::Lanes(DF())) - 1);
+  if constexpr (hn::MaxLanes(DF()) > 8) {
+    std::uint16_t bits;
+    std::memcpy(&bits, bytes, sizeof bits);
+    return bits;
+  } else {
+    return bytes[0] & ((1U << hn::Lanes(DF())) - 1);
+  }
 }
 
 }  // namespace sheaf::raster::HWY_NAMESPACE

@@ -1,9 +1,10 @@
 // bench/peers/llvmpipe: draws a peer scene with Mesa's software rasterizer llvmpipe, off screen, and says how long it
-// takes. Same work as sheaf's plain material: vertex transform, back faces culled, float-precise depth, normal made unit
-// per pixel, directional Lambert lights and a hemisphere, sRGB-coded RGBA8.
+// takes. Same work as sheaf's plain material: vertex transform, back faces culled, float-precise depth, normal made
+// unit per pixel, directional Lambert lights and a hemisphere, sRGB-coded RGBA8.
 //
-//   llvmpipe SCENE FRAMES [PICTURE.png]
+//   peer_llvmpipe SCENE FRAMES THREADS PICTURE.png
 //
+// THREADS are llvmpipe's rasterizer threads; the program's own thread, which transforms the vertices, comes on top.
 // Prints one line of JSON: median, minimum and maximum milliseconds a frame (draw to glFinish), the median with
 // glReadPixels, and what GL calls itself.
 #include <EGL/egl.h>
@@ -203,9 +204,12 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-int run(const std::string& scene_path, int frames, const char* picture_path) {
+int run(const char* scene_path, int frames, const char* threads, const char* picture_path) {
+  setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
+  setenv("GALLIUM_DRIVER", "llvmpipe", 1);
+  setenv("LP_NUM_THREADS", threads, 1);
   const PeerScene scene = readPeerScene(scene_path);
-  require(scene.frame.light_count <= scene.frame.lights.size(), scene_path + ": too many lights");
+  require(scene.frame.light_count <= scene.frame.lights.size(), "too many lights");
   makeContextCurrent();
   const Drawer drawer(scene);
   const auto width = static_cast<int>(scene.frame.width);
@@ -226,15 +230,14 @@ int run(const std::string& scene_path, int frames, const char* picture_path) {
   }
   require(glGetError() == GL_NO_ERROR, "OpenGL reports an error");
 
-  if (picture_path != nullptr) {
-    stbi_flip_vertically_on_write(1);
-    require(stbi_write_png(picture_path, width, height, 4, pixels.data(), 4 * width) != 0,
-            std::string(picture_path) + ": cannot be written");
-  }
-  std::printf("{\"median_ms\": %.3f, \"min_ms\": %.3f, \"max_ms\": %.3f, \"with_readback_ms\": %.3f, \"renderer\": \"%s\"}\n",
-              median(draw_ms), *std::min_element(draw_ms.begin(), draw_ms.end()),
-              *std::max_element(draw_ms.begin(), draw_ms.end()), median(read_ms),
-              reinterpret_cast<const char*>(glGetString(GL_RENDERER)));
+  stbi_flip_vertically_on_write(1);
+  require(stbi_write_png(picture_path, width, height, 4, pixels.data(), 4 * width) != 0,
+          std::string(picture_path) + ": cannot be written");
+  std::printf(
+      "{\"median_ms\": %.3f, \"min_ms\": %.3f, \"max_ms\": %.3f, \"with_readback_ms\": %.3f, \"renderer\": \"%s\"}\n",
+      median(draw_ms), *std::min_element(draw_ms.begin(), draw_ms.end()),
+      *std::max_element(draw_ms.begin(), draw_ms.end()), median(read_ms),
+      reinterpret_cast<const char*>(glGetString(GL_RENDERER)));
   return 0;
 }
 
@@ -242,15 +245,15 @@ int run(const std::string& scene_path, int frames, const char* picture_path) {
 }  // namespace peers
 
 int main(int argc, char** argv) {
-  const int frames = argc >= 3 ? std::atoi(argv[2]) : 0;
-  if (argc < 3 || argc > 4 || frames < 1) {
-    std::fprintf(stderr, "usage: llvmpipe SCENE FRAMES [PICTURE.png]\n");
+  const int frames = argc == 5 ? std::atoi(argv[2]) : 0;
+  if (frames < 1) {
+    std::fprintf(stderr, "usage: peer_llvmpipe SCENE FRAMES THREADS PICTURE.png\n");
     return 2;
   }
   try {
-    return peers::run(argv[1], frames, argc > 3 ? argv[3] : nullptr);
+    return peers::run(argv[1], frames, argv[3], argv[4]);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "llvmpipe: %s\n", error.what());
+    std::fprintf(stderr, "peer_llvmpipe: %s\n", error.what());
     return 1;
   }
 }

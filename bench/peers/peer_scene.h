@@ -1,9 +1,9 @@
 // bench/peers/peer_scene: the scene that both renderers are given, and the file that takes it from one to the other.
 // Knows nothing of sheaf, so that the other renderer's program needs nothing of it.
 //
-// File: the line "sheaf-peer-scene 1\n", then PeerFrame, then for each mesh PeerMesh and its arrays: positions (3 floats
-// a vertex), normals (3 floats a vertex), indices (3 uint32 a triangle). Native byte order: it does not leave the
-// machine.
+// File: the line "sheaf-peer-scene 1\n", then PeerFrame, then for each mesh PeerMesh and its arrays: positions (3
+// floats a vertex), normals (3 floats a vertex), indices (3 uint32 a triangle). Native byte order: it does not leave
+// the machine.
 #pragma once
 
 #include <array>

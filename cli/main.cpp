@@ -1,3 +1,5 @@
-int main() {
-  return 0;
+#include "cli/commands.h"
+
+int main(int argc, char** argv) {
+  return sheaf::cli::runApplication(argc, argv);
 }

@@ -36,8 +36,15 @@ struct PreparedMesh {
   std::uint64_t bytes() const;
 };
 
-/// Immutable and shared by all frames and threads. Does not refer to the scene that it was made from.
+/// Immutable and shared by all frames and threads. Does not refer to the scene that it was made from. Movable only:
+/// materials point to textures.
 struct PreparedScene {
+  PreparedScene() = default;
+  PreparedScene(const PreparedScene&) = delete;
+  PreparedScene& operator=(const PreparedScene&) = delete;
+  PreparedScene(PreparedScene&&) = default;
+  PreparedScene& operator=(PreparedScene&&) = default;
+
   std::vector<PreparedMesh> meshes;
   std::vector<scenes::Instance> instances;
   std::vector<bool> double_sided;  ///< by material
@@ -45,7 +52,7 @@ struct PreparedScene {
   std::vector<raster::MipTexture> textures;
   std::vector<scenes::Light> lights;
   scenes::Ambient ambient;
-  Box3 bounds_world;
+  std::vector<std::string> warnings;
 };
 
 /// Cuts, reorders and packs. The scene's meshes and texture pixels are released as they are taken over, so that mesh

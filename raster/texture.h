@@ -21,30 +21,41 @@ struct TextureSampler {
 
 inline constexpr int kMaxMipLevels = 16;  ///< 32768 pixels per side
 
-/// An sRGB-coded RGBA texture with its mip levels, each averaged in linear light (alpha-weighted) from the one before;
-/// any size, not only powers of two. Level k has max(1, floor(size / 2^k)) pixels per side.
+/// Linear colour, straight alpha, 16-bit fractions. Decoded once when the texture is made: filtering then reads two
+/// words per texel instead of a byte and a table per channel.
+struct LinearTexel {
+  std::uint32_t rg;  ///< r | g << 16
+  std::uint32_t ba;  ///< b | a << 16
+};
+
+/// An RGBA texture with its mip levels, each averaged in linear light (alpha-weighted) from the one before; any size,
+/// not only powers of two. Level k has max(1, floor(size / 2^k)) pixels per side.
 class MipTexture {
  public:
-  /// image  sRGB-coded colour, linear straight alpha; not empty, at most 32768 pixels per side
+  /// image  sRGB-coded colour, linear straight alpha; not empty, at most 32768 pixels per side.
+  /// Throws Error(kUnsupported) beyond kMaxTexels in all levels together.
   explicit MipTexture(const Image8& image);
+
+  static constexpr std::size_t kMaxTexels = std::size_t{1} << 30;  ///< their words are numbered in 31 bits
 
   struct Level {
     std::int32_t width;
     std::int32_t height;
-    std::uint32_t first_texel;  ///< into texels()
+    std::int32_t first_texel;  ///< into texels()
   };
   int levelCount() const { return level_count_; }
   const Level& level(int k) const { return levels_[static_cast<std::size_t>(k)]; }
-  const std::vector<Rgba8>& texels() const { return texels_; }
+  const std::vector<LinearTexel>& texels() const { return texels_; }
 
  private:
-  std::vector<Rgba8> texels_;  // all levels, sRGB-coded, row by row
+  std::vector<LinearTexel> texels_;  // all levels, row by row
   std::array<Level, kMaxMipLevels> levels_{};
   int level_count_ = 0;
 };
 
-/// The plain reference that the kernels are tested against: linear colour at (u, v), trilinear between the levels for
-/// footprint `texels` (the longer axis of a pixel's footprint, in texels of level 0), or nearest in level 0.
+/// The plain reference that the kernels are tested against, in double precision: linear colour at (u, v), trilinear
+/// between the levels for `footprint_texels` (the longer axis of a pixel's footprint, in texels of level 0), or nearest
+/// in level 0.
 Vec4 sampleReference(const MipTexture& texture, const TextureSampler& sampler, Vec2 uv, float footprint_texels);
 
 }  // namespace sheaf::raster

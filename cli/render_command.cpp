@@ -1,0 +1,155 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <limits>
+#include <memory>
+
+#include "cli/build_info.h"
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/output.h"
+#include "cli/render_options.h"
+#include "cli/view.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "pipeline/renderer.h"
+#include "pipeline/timing_report.h"
+#include "raster/image_io.h"
+#include "raster/srgb.h"
+#include "scenes/camera.h"
+
+namespace sheaf::cli {
+namespace {
+
+// Light and neutral, so that dark and bright models stand out.
+constexpr Rgba8 kDefaultBackground{233, 235, 238};
+
+bool outputIsLinear(const RenderRequest& request) {
+  return !request.output.empty() && request.output != "-" && raster::formatOf(request.output).linear;
+}
+
+/// All that can be found out before the input is read.
+void checkBeforehand(const RenderRequest& request) {
+  if (request.output == "-" && isatty(STDOUT_FILENO))
+    throw Error(ErrorCode::kUsage, "-o -: standard output is a terminal; redirect it");
+  const bool is_file = !request.input.starts_with("builtin:");
+  checkOutputs({{"-o", request.output}, {"--timings", request.timings_file}, {"--trace", request.trace_file}},
+               is_file ? std::vector{request.input} : std::vector<std::string>{});
+  if (!request.output.empty() && request.output != "-") raster::checkFormatAvailable(request.output);
+}
+
+Vec4 backgroundOf(const RenderRequest& request, const scenes::Scene& scene) {
+  if (!request.background && scene.background) return Vec4(*scene.background, 1.0F);
+  const Rgba8 c = request.background.value_or(kDefaultBackground);
+  const auto& linear = raster::srgbDecodeTable();
+  return {linear[c.r], linear[c.g], linear[c.b], static_cast<float>(c.a) / 255.0F};
+}
+
+/// From the reversed depth of a frame to the distance along the view, world units; infinity where nothing is.
+void toViewDistance(ImageF& depth, const scenes::Camera& camera) {
+  const double range = camera.far - camera.near;
+  for (float& d : depth.pixels()) {
+    const bool parallel = camera.orthographic_height > 0.0;
+    const double distance = parallel ? camera.far - d * range : camera.far * camera.near / (camera.near + d * range);
+    d = d > 0.0F ? static_cast<float>(distance) : std::numeric_limits<float>::infinity();
+  }
+}
+
+void writeOutput(const RenderRequest& request, const scenes::Camera& camera, pipeline::Frame& frame, TaskPool& pool) {
+  if (request.output == "-") return raster::encodePng(frame.color, pool, writeStdout);
+  raster::Picture picture{.srgb = &frame.color, .linear = frame.linear.empty() ? nullptr : &frame.linear};
+  if (request.want_depth) {
+    toViewDistance(frame.depth, camera);
+    picture.depth = &frame.depth;
+  }
+  if (request.want_ids) {
+    picture.instance_id = &frame.instance_id;
+    picture.triangle_id = &frame.triangle_id;
+  }
+  raster::writePicture(request.output, picture, pool);
+}
+
+void writeReports(const RenderRequest& request, const pipeline::RunTimes& run, int threads) {
+  if (!request.table && request.timings_file.empty() && request.trace_file.empty()) return;
+  const pipeline::RunContext context{.input = request.input,
+                                     .width = request.size.width,
+                                     .height = request.size.height,
+                                     .threads = threads,
+                                     .simd_target = simdTargets().front(),
+                                     .build = buildText(),
+                                     .cpu = cpuModel()};
+  const pipeline::TimingReport report = pipeline::makeTimingReport(run, context);
+  if (!request.timings_file.empty()) writeFile(request.timings_file, pipeline::toJson(report));
+  if (!request.trace_file.empty()) writeFile(request.trace_file, pipeline::toTraceJson(run, context));
+  if (!request.table) return;
+  // With the picture on stdout there is no room for the table there.
+  if (request.output == "-")
+    fmt::print(stderr, "{}", pipeline::formatTable(report));
+  else
+    writeStdout(pipeline::formatTable(report));
+}
+
+scenes::Scene importScene(const RenderRequest& request) {
+  scenes::ImportOptions options;
+  options.z_up = request.view.z_up;
+  if (request.crease_angle_rad) options.crease_angle_rad = *request.crease_angle_rad;
+  return scenes::loadScene(request.input, options);
+}
+
+int runRender(const RenderRequest& request) {
+  pipeline::RunTimes run;
+  run.begin_ns = nowNs();
+  checkBeforehand(request);
+  if (request.simd) forceSimdTarget(*request.simd);
+  TaskPool pool(request.threads);
+
+  scenes::Scene scene;
+  run.import = pipeline::timePhase([&] { scene = importScene(request); });
+  if (!request.quiet) printWarnings(scene.warnings);
+  const double aspect = static_cast<double>(request.size.width) / request.size.height;
+  const scenes::Camera camera = chooseCamera(scene, request.view, aspect);
+  if (scene.lights.empty()) scenes::addDefaultLights(scene, camera);
+
+  pipeline::RenderSettings settings;
+  settings.width = request.size.width;
+  settings.height = request.size.height;
+  settings.cull_patches = request.cull_patches;
+  settings.background = backgroundOf(request, scene);
+  settings.want_linear = outputIsLinear(request);
+  settings.want_srgb = !settings.want_linear;
+  settings.want_depth = request.want_depth;
+  settings.want_ids = request.want_ids;
+  settings.record_spans = !request.trace_file.empty();
+
+  pipeline::PreparedScene prepared;
+  run.prepare = pipeline::timePhase([&] { prepared = pipeline::prepareScene(std::move(scene), pool); });
+  if (!request.quiet) printWarnings(prepared.warnings);
+
+  pipeline::Renderer renderer(pool);
+  pipeline::Frame frame;
+  for (int i = 0; i < request.frames; ++i) {
+    const std::int64_t begin_ns = nowNs();
+    renderer.render(prepared, camera, settings, frame);
+    run.addFrame(begin_ns, frame);
+  }
+  if (!request.output.empty()) run.encode = pipeline::timePhase([&] { writeOutput(request, camera, frame, pool); });
+  run.pixels = request.output.empty()
+                   ? 0
+                   : static_cast<std::uint64_t>(settings.width) * static_cast<std::uint64_t>(settings.height);
+  run.end_ns = nowNs();
+  writeReports(request, run, pool.threadCount());
+  return 0;
+}
+
+}  // namespace
+
+void addRenderCommand(CLI::App& app, Run& run) {
+  CLI::App* command = app.add_subcommand("render", "Render a mesh file or a built-in scene to an image");
+  const auto arguments = std::make_shared<RenderArguments>();
+  addRenderOptions(*command, arguments);
+  command->callback([arguments, &run] { run = [arguments] { return runRender(understand(*arguments)); }; });
+}
+
+}  // namespace sheaf::cli

@@ -1,0 +1,12 @@
+// cli/view: the camera that the options ask for.
+#pragma once
+
+#include "cli/render_options.h"
+#include "scenes/scene.h"
+
+namespace sheaf::cli {
+
+/// A camera with near and far set. Throws Error(kUsage) when the scene does not have what is asked for.
+scenes::Camera chooseCamera(const scenes::Scene& scene, const ViewRequest& request, double aspect);
+
+}  // namespace sheaf::cli

@@ -1,0 +1,19 @@
+// mesh/weld: repairs that importers need before anything else looks at a mesh.
+#pragma once
+
+#include <cstddef>
+
+#include "mesh/mesh.h"
+
+namespace sheaf::mesh {
+
+/// Joins vertices whose attributes are all exactly equal (0.0 equals -0.0, NaN equals nothing). The first of them
+/// stays; the vertices that stay keep their order, and unused ones stay, too. Triangles keep their number, even if two
+/// of their corners became one vertex. Returns how many vertices vanished. Linear time on average.
+std::size_t weldVertices(Mesh& mesh);
+
+/// Drops triangles with a corner whose position is not finite; the others keep their order, the vertices stay.
+/// Returns how many were dropped.
+std::size_t dropUnusableTriangles(Mesh& mesh);
+
+}  // namespace sheaf::mesh

@@ -1,0 +1,85 @@
+#include "pipeline/cull.h"
+
+namespace sheaf::pipeline {
+namespace {
+
+Vec4 row(const Mat4& m, int i) {
+  return {m[0][i], m[1][i], m[2][i], m[3][i]};
+}
+
+struct Range {
+  float lo, hi;
+};
+
+// Of dot(plane, (p, 1)) over the box.
+Range rangeOver(const Vec4& plane, const Box3& box) {
+  Range range{plane.w, plane.w};
+  for (int k = 0; k < 3; ++k) {
+    const float a = plane[k] * box.lo[k];
+    const float b = plane[k] * box.hi[k];
+    range.lo += std::min(a, b);
+    range.hi += std::max(a, b);
+  }
+  return range;
+}
+
+// A bound of the rounding in rangeOver and in the vertices' own transform; a patch within it of a plane counts as
+// crossing.
+float slackOver(const Vec4& plane, const Box3& box) {
+  constexpr float kUlps = 16.0F / (1 << 24);
+  float magnitude = std::abs(plane.w);
+  for (int k = 0; k < 3; ++k) magnitude += std::abs(plane[k]) * std::max(std::abs(box.lo[k]), std::abs(box.hi[k]));
+  return kUlps * magnitude;
+}
+
+bool isOutside(const std::array<Vec4, 6>& planes, const Box3& box) {
+  for (const Vec4& plane : planes)
+    if (rangeOver(plane, box).hi < -slackOver(plane, box)) return true;
+  return false;
+}
+
+// Every triangle of the patch is seen from behind: the eye lies behind the plane of each, wherever in the patch's
+// sphere and whichever normal of the cone.
+bool isBackFacing(const grouping::Patch& patch, const Vec4& eye_object) {
+  if (patch.cone.sin_angle >= 1.0F) return false;
+  if (eye_object.w == 0.0F) {
+    const Vec3 from_eye = -Vec3(eye_object);
+    return glm::dot(from_eye, patch.cone.axis) >= patch.cone.sin_angle * glm::length(from_eye);
+  }
+  const Vec3 from_eye = patch.bounds.center() - Vec3(eye_object);
+  const float radius = 0.5F * glm::length(patch.bounds.size());
+  return glm::dot(from_eye, patch.cone.axis) >= patch.cone.sin_angle * glm::length(from_eye) + radius;
+}
+
+}  // namespace
+
+InstanceView viewInstance(const scenes::Instance& instance, const Box3& bounds_object, const View& view, bool cull) {
+  InstanceView out;
+  out.clip_from_object = Mat4(view.clip_from_world * instance.world_from_object);
+  const Vec4 x = row(out.clip_from_object, 0);
+  const Vec4 y = row(out.clip_from_object, 1);
+  const Vec4 z = row(out.clip_from_object, 2);
+  const Vec4 w = row(out.clip_from_object, 3);
+  out.view_planes = {w + x, w - x, w + y, w - y, z, w - z};
+  const Vec4 guard_x = view.viewport.guard_x * w;
+  const Vec4 guard_y = view.viewport.guard_y * w;
+  out.guard_planes = {guard_x + x, guard_x - x, guard_y + y, guard_y - y};
+  const DMat4 object_from_world = glm::inverse(instance.world_from_object);
+  out.eye_object = Vec4(object_from_world * view.eye_world);
+  out.mirrored = glm::determinant(DMat3(instance.world_from_object)) < 0.0;
+  out.visible = !cull || (!bounds_object.empty() && !isOutside(out.view_planes, bounds_object));
+  return out;
+}
+
+PatchVisibility classifyPatch(const grouping::Patch& patch, const InstanceView& view, bool back_faces_culled) {
+  if (isOutside(view.view_planes, patch.bounds)) return PatchVisibility::kOutside;
+  if (back_faces_culled && isBackFacing(patch, view.eye_object)) return PatchVisibility::kBackFacing;
+  const auto crosses = [&](const Vec4& plane) {
+    return rangeOver(plane, patch.bounds).lo < slackOver(plane, patch.bounds);
+  };
+  bool clips = crosses(view.view_planes[4]) || crosses(view.view_planes[5]);
+  for (const Vec4& plane : view.guard_planes) clips = clips || crosses(plane);
+  return clips ? PatchVisibility::kStraddling : PatchVisibility::kInside;
+}
+
+}  // namespace sheaf::pipeline

@@ -1,0 +1,44 @@
+// pipeline/geometry: the per-frame geometry stage for one patch: transform, clip, set up and bin. What one worker needs
+// for it lies in a GeometryWorker.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/stage_timer.h"
+#include "pipeline/clip.h"
+#include "pipeline/counters.h"
+#include "pipeline/cull.h"
+#include "pipeline/prepare.h"
+#include "pipeline/transform.h"
+#include "raster/bins.h"
+#include "raster/setup.h"
+#include "raster/tile.h"
+
+namespace sheaf::pipeline {
+
+/// A patch of an instance that survived culling.
+struct DrawnPatch {
+  std::uint32_t instance;
+  std::uint32_t patch;
+  bool inside;  ///< no vertex needs clipping
+};
+
+/// Scratch memory of one worker; all of it stays in its caches.
+struct GeometryWorker {
+  raster::Binner binner;
+  StageClock clock;
+  Counters counters;
+  std::vector<DrawnPatch> drawn;
+  ClipVertices clip;
+  ProjectedVertices projected;
+  alignas(64) std::array<std::int32_t, kMaxPatchVertices> codes;
+  ClassifiedTriangles classified;
+  std::vector<raster::TileEntries> tile_entries;
+};
+
+/// Draws one patch into the worker's bins. The clock must run; it is left in some stage.
+void drawPatch(const PreparedMesh& mesh, const grouping::Patch& patch, const InstanceView& view, bool cull_back,
+               bool inside, std::uint32_t surface, const Viewport& viewport, GeometryWorker& worker);
+
+}  // namespace sheaf::pipeline

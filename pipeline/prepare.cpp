@@ -1,0 +1,153 @@
+#include "pipeline/prepare.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace sheaf::pipeline {
+namespace {
+
+template <typename T>
+std::uint64_t bytesOf(const std::vector<T>& v) {
+  return v.capacity() * sizeof(T);
+}
+
+raster::WrapMode wrapMode(scenes::Wrap wrap) {
+  switch (wrap) {
+    case scenes::Wrap::kClamp:
+      return raster::WrapMode::kClamp;
+    case scenes::Wrap::kMirror:
+      return raster::WrapMode::kMirror;
+    case scenes::Wrap::kRepeat:
+      break;
+  }
+  return raster::WrapMode::kRepeat;
+}
+
+raster::SolidTexture solidTexture(scenes::Solid solid) {
+  switch (solid) {
+    case scenes::Solid::kMarble:
+      return raster::SolidTexture::kMarble;
+    case scenes::Solid::kWood:
+      return raster::SolidTexture::kWood;
+    case scenes::Solid::kChecker:
+      return raster::SolidTexture::kChecker;
+    case scenes::Solid::kNone:
+      break;
+  }
+  return raster::SolidTexture::kNone;
+}
+
+raster::ShadeModel shadeModel(scenes::Shading shading) {
+  switch (shading) {
+    case scenes::Shading::kFlat:
+      return raster::ShadeModel::kFlat;
+    case scenes::Shading::kUnlit:
+      return raster::ShadeModel::kUnlit;
+    case scenes::Shading::kSmooth:
+      break;
+  }
+  return raster::ShadeModel::kSmooth;
+}
+
+raster::ShadeMaterial shadeMaterial(const scenes::Material& in, const std::vector<raster::MipTexture>& textures) {
+  raster::ShadeMaterial out;
+  const scenes::TextureUse& use = in.base_color_texture;
+  out.base_color = in.base_color;
+  if (use.texture >= 0) out.texture = &textures[static_cast<std::size_t>(use.texture)];
+  out.sampler = {
+      wrapMode(use.wrap_u), wrapMode(use.wrap_v),
+      use.filter == scenes::Filter::kNearest ? raster::FilterMode::kNearest : raster::FilterMode::kTrilinear};
+  out.uv_linear = use.linear;
+  out.uv_offset = use.offset;
+  out.solid = solidTexture(in.solid);
+  out.solid_colors = in.solid_colors;
+  out.solid_frequency = in.solid_frequency;
+  out.specular = in.specular;
+  out.shininess = in.shininess;
+  out.model = shadeModel(in.shading);
+  return out;
+}
+
+void gatherAttributes(const mesh::Mesh& mesh, const grouping::PatchSet& set, std::size_t begin, std::size_t end,
+                      PreparedMesh& out) {
+  for (std::size_t slot = begin; slot < end; ++slot) {
+    const std::uint32_t v = set.vertex_source[slot];
+    for (int k = 0; k < 3; ++k) out.position[static_cast<std::size_t>(k)][slot] = mesh.positions[v][k];
+    if (!mesh.normals.empty()) out.normal[slot] = raster::packNormal(mesh.normals[v]);
+    if (!mesh.texcoords.empty())
+      for (int k = 0; k < 2; ++k) out.texcoord[static_cast<std::size_t>(k)][slot] = mesh.texcoords[v][k];
+    if (!mesh.colors.empty()) {
+      const auto packed = raster::packColor(mesh.colors[v]);
+      for (std::size_t k = 0; k < 2; ++k) out.color[k][slot] = packed[k];
+    }
+  }
+}
+
+PreparedMesh prepareMesh(const mesh::Mesh& mesh, TaskPool& pool) {
+  grouping::PatchSet set = grouping::splitIntoPatches(mesh, {}, pool);
+  PreparedMesh out;
+  const std::size_t slots = set.vertex_source.size();
+  for (auto& axis : out.position) axis.resize(slots);
+  if (!mesh.normals.empty()) out.normal.resize(slots);
+  if (!mesh.texcoords.empty())
+    for (auto& axis : out.texcoord) axis.resize(slots);
+  if (!mesh.colors.empty())
+    for (auto& half : out.color) half.resize(slots);
+
+  constexpr std::size_t kSlotsPerPiece = 16384;
+  pool.parallelFor(static_cast<int>((slots + kSlotsPerPiece - 1) / kSlotsPerPiece), [&](int piece, int) {
+    const std::size_t begin = static_cast<std::size_t>(piece) * kSlotsPerPiece;
+    gatherAttributes(mesh, set, begin, std::min(slots, begin + kSlotsPerPiece), out);
+  });
+
+  for (const grouping::Patch& patch : set.patches) {
+    out.bounds.extend(patch.bounds);
+    out.vertex_count += patch.vertex_count;
+    out.triangle_count += patch.triangle_count;
+  }
+  out.patches = std::move(set.patches);
+  out.corners = std::move(set.corners);
+  out.triangle_source = std::move(set.triangle_source);
+  return out;
+}
+
+}  // namespace
+
+std::uint64_t PreparedMesh::bytes() const {
+  std::uint64_t sum = bytesOf(patches) + bytesOf(triangle_source) + bytesOf(normal);
+  for (const auto& c : corners) sum += bytesOf(c);
+  for (const auto& p : position) sum += bytesOf(p);
+  for (const auto& t : texcoord) sum += bytesOf(t);
+  for (const auto& c : color) sum += bytesOf(c);
+  return sum;
+}
+
+PreparedScene prepareScene(scenes::Scene scene, TaskPool& pool) {
+  PreparedScene out;
+  out.meshes.reserve(scene.meshes.size());
+  for (mesh::Mesh& mesh : scene.meshes) {
+    out.meshes.push_back(prepareMesh(mesh, pool));
+    mesh = {};
+  }
+  out.textures.reserve(scene.textures.size());
+  for (scenes::Texture& texture : scene.textures) {
+    out.textures.emplace_back(texture.pixels);
+    texture.pixels = {};
+  }
+  for (const scenes::Material& material : scene.materials) {
+    out.materials.push_back(shadeMaterial(material, out.textures));
+    out.double_sided.push_back(material.double_sided);
+  }
+  out.instances = std::move(scene.instances);
+  out.lights = std::move(scene.lights);
+  if (out.lights.size() > raster::kMaxLights) {
+    out.warnings.push_back(fmt::format("{}: has {} lights, only the first {} are used", scene.name, out.lights.size(),
+                                       raster::kMaxLights));
+    out.lights.resize(raster::kMaxLights);
+  }
+  out.ambient = scene.ambient;
+  return out;
+}
+
+}  // namespace sheaf::pipeline

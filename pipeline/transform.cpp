@@ -1,0 +1,48 @@
+#include "pipeline/transform.h"
+
+#include "raster/screen.h"
+
+namespace sheaf::pipeline {
+namespace {
+// A pixel less than the raster's band: clipping rounds.
+constexpr float kGuardPx = raster::kGuardBandPx - 1;
+}  // namespace
+
+Viewport::Viewport(int width, int height)
+    : half_width_px(0.5F * static_cast<float>(width)),
+      half_height_px(0.5F * static_cast<float>(height)),
+      guard_x(kGuardPx / half_width_px),
+      guard_y(kGuardPx / half_height_px) {}
+
+Vec4 transformVertex(const Vec3& p, const Mat4& m) {
+  Vec4 clip;
+  for (int row = 0; row < 4; ++row) clip[row] = ((m[3][row] + m[0][row] * p.x) + m[1][row] * p.y) + m[2][row] * p.z;
+  return clip;
+}
+
+ProjectedVertex projectVertex(const Vec4& clip, const Viewport& viewport) {
+  const float inv_w = 1.0F / clip.w;
+  const float x_px = (clip.x * inv_w) * viewport.half_width_px + viewport.half_width_px;
+  const float y_px = viewport.half_height_px - (clip.y * inv_w) * viewport.half_height_px;
+  return {static_cast<std::int32_t>(std::nearbyint(x_px * raster::kSubpixels)),
+          static_cast<std::int32_t>(std::nearbyint(y_px * raster::kSubpixels)), clip.z * inv_w, inv_w};
+}
+
+std::int32_t outcodeVertex(const Vec4& c, const Viewport& viewport) {
+  const float guard_x = viewport.guard_x * c.w;
+  const float guard_y = viewport.guard_y * c.w;
+  std::int32_t code = 0;
+  if (c.x < -c.w) code |= kOutLeft;
+  if (c.x > c.w) code |= kOutRight;
+  if (c.y < -c.w) code |= kOutBottom;
+  if (c.y > c.w) code |= kOutTop;
+  if (c.z < 0.0F) code |= kOutFar;
+  if (c.z > c.w || c.w <= 0.0F) code |= kOutNear;
+  if (c.x < -guard_x) code |= kGuardLeft;
+  if (c.x > guard_x) code |= kGuardRight;
+  if (c.y < -guard_y) code |= kGuardBottom;
+  if (c.y > guard_y) code |= kGuardTop;
+  return code;
+}
+
+}  // namespace sheaf::pipeline

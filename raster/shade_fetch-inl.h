@@ -1,0 +1,270 @@
+// raster/shade_fetch-inl: brings what a vector of pixels needs from its triangles into rows of lanes.
+#include <algorithm>
+#include <bit>
+
+#include "raster/shade.h"
+#include "raster/shade_normal-inl.h"
+
+#if defined(SHEAF_RASTER_SHADE_FETCH_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SHEAF_RASTER_SHADE_FETCH_INL_H_
+#undef SHEAF_RASTER_SHADE_FETCH_INL_H_
+#else
+#define SHEAF_RASTER_SHADE_FETCH_INL_H_
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace sheaf::raster::HWY_NAMESPACE {
+
+// ShadeTriangle as sixteen 32-bit words; FetchVector() relies on their order.
+inline constexpr int kWords = 16;
+static_assert(sizeof(ShadeTriangle) == kWords * sizeof(std::uint32_t));
+static_assert(offsetof(ShadeTriangle, ux) == 3 * 4 && offsetof(ShadeTriangle, uy) == 6 * 4);
+static_assert(offsetof(ShadeTriangle, ref_x) == 9 * 4 && offsetof(ShadeTriangle, vertex) == 10 * 4);
+static_assert(offsetof(ShadeTriangle, surface) == 13 * 4 && offsetof(ShadeTriangle, back_face) == 15 * 4);
+
+/// What the triangles of a block's pixels say there, in the order of tileIndex(): a vector of pixels is a piece of
+/// every row. In memory, so that each step over a block is a short loop whose turns overlap in the processor; in one
+/// long loop the latencies of loads, decoding and lighting add up.
+struct BlockFragments {
+  alignas(64) float barycentric[3][kBlockPixels];  ///< perspective-correct
+  alignas(64) std::int32_t vertex[3][kBlockPixels];
+  alignas(64) std::uint32_t flip[kBlockPixels];  ///< sign bit set: the normal is turned round
+  alignas(64) float normal[3][kBlockPixels];     ///< object space, any length
+  // For textures only: how the planes of ShadeTriangle rise along x and y, divided by their sum here.
+  alignas(64) float along_x[3][kBlockPixels];
+  alignas(64) float along_y[3][kBlockPixels];
+  // Of each vector, at its first pixel: the lanes to shade now, and the one triangle that all show, or kNoTriangle.
+  std::uint32_t lanes[kBlockPixels];
+  std::uint32_t uniform[kBlockPixels];
+};
+
+/// The unit normals of the corners of the triangle that was last seen to fill a vector, as most large ones do again.
+struct CornerNormals {
+  std::uint32_t triangle = kNoTriangle;
+  float corner[3][3];
+};
+
+HWY_INLINE std::uint64_t AllLanes() {
+  return (std::uint64_t{1} << hn::Lanes(DF())) - 1;
+}
+
+#if HWY_TARGET == HWY_SCALAR || HWY_HAVE_SCALABLE
+
+HWY_INLINE void LoadFourWords(const std::uint32_t* words, const std::uint32_t* ids, VU& a, VU& b, VU& c, VU& d) {
+  const DI di;
+  const auto* base = reinterpret_cast<const std::int32_t*>(words);
+  const VI first = hn::BitCast(di, hn::ShiftLeft<4>(hn::Load(DU(), ids)));
+  a = hn::BitCast(DU(), hn::GatherIndex(di, base, first));
+  b = hn::BitCast(DU(), hn::GatherIndex(di, base + 1, first));
+  c = hn::BitCast(DU(), hn::GatherIndex(di, base + 2, first));
+  d = hn::BitCast(DU(), hn::GatherIndex(di, base + 3, first));
+}
+
+#else
+
+/// Four words at words[16 * ids[0]], four at words[16 * ids[4]], and so on.
+template <class D>
+HWY_INLINE hn::Vec<D> LoadQuads(D d, const std::uint32_t* words, const std::uint32_t* ids) {
+  if constexpr (hn::MaxLanes(D()) == 4) {
+    return hn::Load(d, words + std::size_t{kWords} * ids[0]);
+  } else {
+    const hn::Half<D> half;
+    return hn::Combine(d, LoadQuads(half, words, ids + hn::MaxLanes(half)), LoadQuads(half, words, ids));
+  }
+}
+
+/// Words 0 to 3 of each lane's record. A record is one cache line, so that a quarter of it is loaded whole and
+/// transposed: gathers, one per word and lane, take about three times as long.
+HWY_INLINE void LoadFourWords(const std::uint32_t* words, const std::uint32_t* ids, VU& a, VU& b, VU& c, VU& d) {
+  const DU du;
+  const hn::Repartition<std::uint64_t, DU> d64;
+  const VU row0 = LoadQuads(du, words, ids);
+  const VU row1 = LoadQuads(du, words, ids + 1);
+  const VU row2 = LoadQuads(du, words, ids + 2);
+  const VU row3 = LoadQuads(du, words, ids + 3);
+  const auto lower01 = hn::BitCast(d64, hn::InterleaveLower(du, row0, row1));
+  const auto upper01 = hn::BitCast(d64, hn::InterleaveUpper(du, row0, row1));
+  const auto lower23 = hn::BitCast(d64, hn::InterleaveLower(du, row2, row3));
+  const auto upper23 = hn::BitCast(d64, hn::InterleaveUpper(du, row2, row3));
+  a = hn::BitCast(du, hn::InterleaveLower(d64, lower01, lower23));
+  b = hn::BitCast(du, hn::InterleaveUpper(d64, lower01, lower23));
+  c = hn::BitCast(du, hn::InterleaveLower(d64, upper01, upper23));
+  d = hn::BitCast(du, hn::InterleaveUpper(d64, upper01, upper23));
+}
+
+#endif
+
+/// A quarter of the records of ids[0, lanes). Uniform: all ids are the same, and one record is loaded for all lanes.
+template <bool kUniform>
+HWY_INLINE void LoadQuarter(const ShadeTriangle* triangles, int quarter, const std::uint32_t* ids, VU& a, VU& b, VU& c,
+                            VU& d) {
+  const auto* words = reinterpret_cast<const std::uint32_t*>(triangles) + 4 * quarter;
+  if constexpr (kUniform) {
+    const std::uint32_t* word = words + std::size_t{kWords} * ids[0];
+    a = hn::Set(DU(), word[0]);
+    b = hn::Set(DU(), word[1]);
+    c = hn::Set(DU(), word[2]);
+    d = hn::Set(DU(), word[3]);
+  } else {
+    LoadFourWords(words, ids, a, b, c, d);
+  }
+}
+
+/// Evaluates the triangles at one vector of pixels; returns the lanes that are of the surface.
+template <bool kUniform, bool kTextured>
+HWY_INLINE MF FetchVector(const ShadeTriangle* triangles, const std::uint32_t* ids, std::uint32_t surface_id, VI x,
+                          VI y, std::size_t begin, BlockFragments& out) {
+  const DF d;
+  const DI di;
+  const DU du;
+  // The words of a record in order: u0 u0 u0 ux, ux ux uy uy, uy ref vertex vertex, vertex surface triangle back_face.
+  VU u00, u01, u02, ux0, ux1, ux2, uy0, uy1, uy2, ref, vertex0, vertex1, vertex2, surface, triangle, back_face;
+  LoadQuarter<kUniform>(triangles, 0, ids, u00, u01, u02, ux0);
+  LoadQuarter<kUniform>(triangles, 1, ids, ux1, ux2, uy0, uy1);
+  LoadQuarter<kUniform>(triangles, 2, ids, uy2, ref, vertex0, vertex1);
+  LoadQuarter<kUniform>(triangles, 3, ids, vertex2, surface, triangle, back_face);
+  static_cast<void>(triangle);
+
+  const VI ref_xy = hn::BitCast(di, ref);
+  const VF dx = hn::ConvertTo(d, hn::Sub(x, hn::ShiftRight<16>(hn::ShiftLeft<16>(ref_xy))));
+  const VF dy = hn::ConvertTo(d, hn::Sub(y, hn::ShiftRight<16>(ref_xy)));
+  const auto plane = [&](VU at_ref, VU along_x, VU along_y) HWY_ATTR {
+    const VF moved_x = hn::Mul(hn::BitCast(DF(), along_x), dx);
+    const VF moved_y = hn::Mul(hn::BitCast(DF(), along_y), dy);
+    return hn::Add(hn::Add(hn::BitCast(DF(), at_ref), moved_x), moved_y);
+  };
+  const VF u0 = plane(u00, ux0, uy0);
+  const VF u1 = plane(u01, ux1, uy1);
+  const VF u2 = plane(u02, ux2, uy2);
+  const VF inverse_sum = hn::Div(Constant(1.0F), hn::Add(hn::Add(u0, u1), u2));
+  hn::Store(hn::Mul(u0, inverse_sum), d, out.barycentric[0] + begin);
+  hn::Store(hn::Mul(u1, inverse_sum), d, out.barycentric[1] + begin);
+  hn::Store(hn::Mul(u2, inverse_sum), d, out.barycentric[2] + begin);
+  hn::Store(hn::BitCast(di, vertex0), di, out.vertex[0] + begin);
+  hn::Store(hn::BitCast(di, vertex1), di, out.vertex[1] + begin);
+  hn::Store(hn::BitCast(di, vertex2), di, out.vertex[2] + begin);
+  hn::Store(hn::ShiftLeft<31>(back_face), du, out.flip + begin);
+  if constexpr (kTextured) {
+    hn::Store(hn::Mul(hn::BitCast(d, ux0), inverse_sum), d, out.along_x[0] + begin);
+    hn::Store(hn::Mul(hn::BitCast(d, ux1), inverse_sum), d, out.along_x[1] + begin);
+    hn::Store(hn::Mul(hn::BitCast(d, ux2), inverse_sum), d, out.along_x[2] + begin);
+    hn::Store(hn::Mul(hn::BitCast(d, uy0), inverse_sum), d, out.along_y[0] + begin);
+    hn::Store(hn::Mul(hn::BitCast(d, uy1), inverse_sum), d, out.along_y[1] + begin);
+    hn::Store(hn::Mul(hn::BitCast(d, uy2), inverse_sum), d, out.along_y[2] + begin);
+  }
+  return hn::RebindMask(d, hn::Eq(surface, hn::Set(du, surface_id)));
+}
+
+/// Lets the lanes outside `mine`, which belong to another surface's arrays, read the vertices of a lane within.
+HWY_INLINE void HideOtherVertices(std::uint64_t mine, std::size_t begin, BlockFragments& out) {
+  const DI di;
+  const auto mask = hn::RebindMask(di, MaskOfBits(mine));
+  for (auto& row : out.vertex) {
+    std::int32_t* vertex = row + begin;
+    const VI shared = hn::Set(di, vertex[std::countr_zero(mine)]);
+    hn::Store(hn::IfThenElse(mask, hn::Load(di, vertex), shared), di, vertex);
+  }
+}
+
+/// Evaluates the triangles at those pending pixels that show the surface, and returns these pixels. (x0, y0) is the
+/// block's top left pixel, ids are its kBlockPixels triangles.
+template <bool kTextured>
+HWY_INLINE std::uint64_t FetchFragments(const ShadeTriangle* triangles, const std::uint32_t* ids,
+                                        std::uint32_t surface_id, std::uint64_t pending, std::int32_t x0,
+                                        std::int32_t y0, BlockFragments& out) {
+  const DI di;
+  const DU du;
+  constexpr std::int32_t kRowMask = kBlockSize - 1;
+  const VI lane = hn::Iota(di, 0);
+  const VI lane_x = hn::Add(hn::And(lane, hn::Set(di, kRowMask)), hn::Set(di, x0));
+  const VI lane_y = hn::Add(hn::ShiftRight<3>(lane), hn::Set(di, y0));
+  std::uint64_t all_mine = 0;
+  for (std::size_t begin = 0; begin < kBlockPixels; begin += hn::Lanes(du)) {
+    out.lanes[begin] = 0;
+    const std::uint64_t bits = pending >> begin & AllLanes();
+    if (bits == 0) continue;
+    // Lanes without a pixel of their own follow the first that has one.
+    const std::uint32_t first_id = ids[begin + static_cast<std::size_t>(std::countr_zero(bits))];
+    const VU first = hn::Set(du, first_id);
+    const VU id = hn::IfThenElse(hn::RebindMask(du, MaskOfBits(bits)), hn::Load(du, ids + begin), first);
+    alignas(64) std::uint32_t lane_ids[kMaxLanes];
+    hn::Store(id, du, lane_ids);
+    const bool uniform = hn::AllTrue(du, hn::Eq(id, first));
+    out.uniform[begin] = uniform ? first_id : kNoTriangle;
+    const VI x = hn::Add(lane_x, hn::Set(di, static_cast<std::int32_t>(begin) & kRowMask));
+    const VI y = hn::Add(lane_y, hn::Set(di, static_cast<std::int32_t>(begin) / kBlockSize));
+    const MF of_surface = uniform ? FetchVector<true, kTextured>(triangles, lane_ids, surface_id, x, y, begin, out)
+                                  : FetchVector<false, kTextured>(triangles, lane_ids, surface_id, x, y, begin, out);
+    const std::uint64_t mine = bits & BitsOfMask(of_surface);
+    out.lanes[begin] = static_cast<std::uint32_t>(mine);
+    all_mine |= mine << begin;
+    if (mine != 0 && mine != bits) HideOtherVertices(mine, begin, out);
+  }
+  return all_mine;
+}
+
+/// Object-space normals of all vectors, interpolated between the corners' unit normals.
+HWY_INLINE void FetchSmoothNormals(const std::uint32_t* normals, BlockFragments& fragments, CornerNormals& last) {
+  const DF d;
+  const auto* packed_normals = reinterpret_cast<const std::int32_t*>(normals);
+  for (std::size_t begin = 0; begin < kBlockPixels; begin += hn::Lanes(d)) {
+    if (fragments.lanes[begin] == 0) continue;
+    const std::uint32_t uniform = fragments.uniform[begin];
+    const bool known = uniform != kNoTriangle && uniform == last.triangle;
+    VF nx = hn::Zero(d);
+    VF ny = hn::Zero(d);
+    VF nz = hn::Zero(d);
+    for (int corner = 0; corner < 3; ++corner) {
+      VF x, y, z;
+      if (known) {
+        x = Constant(last.corner[corner][0]);
+        y = Constant(last.corner[corner][1]);
+        z = Constant(last.corner[corner][2]);
+      } else {
+        const VI packed = hn::GatherIndex(DI(), packed_normals, hn::Load(DI(), fragments.vertex[corner] + begin));
+        UnpackNormals(hn::BitCast(DU(), packed), x, y, z);
+        if (uniform != kNoTriangle) {
+          last.corner[corner][0] = hn::GetLane(x);
+          last.corner[corner][1] = hn::GetLane(y);
+          last.corner[corner][2] = hn::GetLane(z);
+        }
+      }
+      const VF weight = hn::Load(d, fragments.barycentric[corner] + begin);
+      nx = hn::Add(nx, hn::Mul(weight, x));
+      ny = hn::Add(ny, hn::Mul(weight, y));
+      nz = hn::Add(nz, hn::Mul(weight, z));
+    }
+    if (uniform != kNoTriangle) last.triangle = uniform;
+    hn::Store(nx, d, fragments.normal[0] + begin);
+    hn::Store(ny, d, fragments.normal[1] + begin);
+    hn::Store(nz, d, fragments.normal[2] + begin);
+  }
+}
+
+/// The triangles' own object-space normals.
+HWY_INLINE void FetchFlatNormals(const std::array<const float*, 3>& position, BlockFragments& fragments) {
+  const DF d;
+  for (std::size_t begin = 0; begin < kBlockPixels; begin += hn::Lanes(d)) {
+    if (fragments.lanes[begin] == 0) continue;
+    const VI v0 = hn::Load(DI(), fragments.vertex[0] + begin);
+    const VI v1 = hn::Load(DI(), fragments.vertex[1] + begin);
+    const VI v2 = hn::Load(DI(), fragments.vertex[2] + begin);
+    const VF x0 = hn::GatherIndex(d, position[0], v0);
+    const VF y0 = hn::GatherIndex(d, position[1], v0);
+    const VF z0 = hn::GatherIndex(d, position[2], v0);
+    const VF ax = hn::Sub(hn::GatherIndex(d, position[0], v1), x0);
+    const VF ay = hn::Sub(hn::GatherIndex(d, position[1], v1), y0);
+    const VF az = hn::Sub(hn::GatherIndex(d, position[2], v1), z0);
+    const VF bx = hn::Sub(hn::GatherIndex(d, position[0], v2), x0);
+    const VF by = hn::Sub(hn::GatherIndex(d, position[1], v2), y0);
+    const VF bz = hn::Sub(hn::GatherIndex(d, position[2], v2), z0);
+    hn::Store(hn::Sub(hn::Mul(ay, bz), hn::Mul(az, by)), d, fragments.normal[0] + begin);
+    hn::Store(hn::Sub(hn::Mul(az, bx), hn::Mul(ax, bz)), d, fragments.normal[1] + begin);
+    hn::Store(hn::Sub(hn::Mul(ax, by), hn::Mul(ay, bx)), d, fragments.normal[2] + begin);
+  }
+}
+
+}  // namespace sheaf::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,318 @@
+#include <algorithm>
+#include <bit>
+#include <type_traits>
+
+#include "raster/edges.h"
+#include "raster/tile.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raster/tile_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace sheaf::raster::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr std::size_t kMaxLanes = 16;
+const hn::CappedTag<std::int32_t, kMaxLanes> di;
+const hn::RebindToFloat<decltype(di)> df;
+const hn::RebindToUnsigned<decltype(di)> du;
+using VI = hn::Vec<decltype(di)>;
+using VF = hn::Vec<decltype(df)>;
+
+// Column and row of the pixels of a block in memory order.
+struct BlockOffsets {
+  alignas(64) float column[kBlockPixels];
+  alignas(64) float row[kBlockPixels];
+};
+constexpr BlockOffsets MakeBlockOffsets() {
+  BlockOffsets offsets{};
+  for (int p = 0; p < kBlockPixels; ++p) {
+    offsets.column[p] = static_cast<float>(p % kBlockSize);
+    offsets.row[p] = static_cast<float>(p / kBlockSize);
+  }
+  return offsets;
+}
+constexpr BlockOffsets kBlockOffsets = MakeBlockOffsets();
+
+// The tile being drawn: visibility, and per block a depth that nothing in the block is behind.
+struct TileState {
+  TileVisibility* visibility;
+  const ShadeTriangle* triangles;
+  float farthest[kBlocksPerTile];
+};
+
+// Of two triangles at equal depth the lower (surface, triangle) is seen.
+bool WinsTie(const ShadeTriangle* triangles, std::uint32_t candidate, std::uint32_t present) {
+  if (present == kNoTriangle) return true;
+  const ShadeTriangle& a = triangles[candidate];
+  const ShadeTriangle& b = triangles[present];
+  return a.surface != b.surface ? a.surface < b.surface : a.triangle < b.triangle;
+}
+
+void DrawSmall(const BinEntry& entry, int x0, int y0, TileState& state) {
+  float* depth = state.visibility->depth;
+  std::uint32_t* triangle = state.visibility->triangle;
+  const int x = entry.x - x0;
+  const int y = entry.y - y0;
+  for (unsigned rest = entry.mask; rest != 0; rest &= rest - 1) {
+    const int bit = std::countr_zero(rest);
+    const int dx = bit & 3;
+    const int dy = bit >> 2;
+    float z = (entry.depth.z + entry.depth.dzdx * static_cast<float>(dx)) + entry.depth.dzdy * static_cast<float>(dy);
+    z = std::min(std::max(z, entry.depth.lo), entry.depth.hi);
+    const int p = tileIndex(x + dx, y + dy);
+    if (z < depth[p] || (z == depth[p] && !WinsTie(state.triangles, entry.index, triangle[p]))) continue;
+    depth[p] = z;
+    triangle[p] = entry.index;
+  }
+}
+
+// Edges of a large triangle that cross the tile, at the tile's first pixel centre.
+struct TileEdges {
+  int count = 0;
+  std::int32_t a[3], b[3], c[3];
+};
+
+// False: the triangle misses the tile.
+bool EdgesInTile(const LargeTriangle& triangle, int x0, int y0, TileEdges& edges) {
+  for (const PixelEdge& edge : triangle.edges) {
+    const std::int64_t at_tile = edge.at(x0 - triangle.ref_x, y0 - triangle.ref_y);
+    if (at_tile + edge.riseOver(kTileSize) < 0) return false;
+    if (at_tile + edge.fallOver(kTileSize) >= 0) continue;  // the whole tile is inside this edge
+    edges.a[edges.count] = edge.a;
+    edges.b[edges.count] = edge.b;
+    edges.c[edges.count] = static_cast<std::int32_t>(at_tile);
+    ++edges.count;
+  }
+  return true;
+}
+
+// Pixels of the tile that the triangle may cover, both ends included.
+struct TileBox {
+  int x_min, y_min, x_max, y_max;
+};
+
+TileBox BoxInTile(const LargeTriangle& triangle, int x0, int y0) {
+  return {std::max(triangle.ref_x - x0, 0), std::max(triangle.ref_y - y0, 0),
+          std::min(triangle.last_x - x0, kTileSize - 1), std::min(triangle.last_y - y0, kTileSize - 1)};
+}
+
+// One bit per block, in memory order: the blocks under the box.
+std::uint64_t BlocksUnder(const TileBox& box) {
+  static_assert(kBlocksPerTileSide == 8);
+  const unsigned columns = (0xFFU << (box.x_min / kBlockSize)) & (0xFFU >> (7 - box.x_max / kBlockSize));
+  const int first_row = box.y_min / kBlockSize;
+  const int last_row = box.y_max / kBlockSize;
+  const std::uint64_t rows = (~std::uint64_t{0} << (8 * first_row)) & (~std::uint64_t{0} >> (8 * (7 - last_row)));
+  return (columns * 0x0101010101010101U) & rows;
+}
+
+// Which blocks some edge leaves wholly out, and which all edges leave wholly in.
+struct BlockMasks {
+  std::uint64_t touched;
+  std::uint64_t full;
+};
+
+std::uint64_t SignBits(VI v) {
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(di, hn::Lt(v, hn::Zero(di)), bits);
+  return bits[0] | std::uint64_t{bits[1]} << 8;
+}
+
+BlockMasks ClassifyBlocks(const TileEdges& edges) {
+  const auto lanes = static_cast<int>(hn::Lanes(di));
+  std::uint64_t outside = 0;
+  std::uint64_t partial = 0;
+  for (int block = 0; block < kBlocksPerTile; block += lanes) {
+    const VI index = hn::Iota(di, block);
+    const VI x = hn::ShiftLeft<3>(hn::And(index, hn::Set(di, kBlocksPerTileSide - 1)));
+    const VI y = hn::ShiftLeft<3>(hn::ShiftRight<3>(index));
+    VI rejected = hn::Zero(di);
+    VI crossed = hn::Zero(di);
+    for (int i = 0; i < edges.count; ++i) {
+      const std::int32_t rise = (std::max(edges.a[i], 0) + std::max(edges.b[i], 0)) * (kBlockSize - 1);
+      const std::int32_t fall = (std::min(edges.a[i], 0) + std::min(edges.b[i], 0)) * (kBlockSize - 1);
+      const VI e = hn::Add(hn::Set(di, edges.c[i]),
+                           hn::Add(hn::Mul(hn::Set(di, edges.a[i]), x), hn::Mul(hn::Set(di, edges.b[i]), y)));
+      rejected = hn::Or(rejected, hn::Add(e, hn::Set(di, rise)));
+      crossed = hn::Or(crossed, hn::Add(e, hn::Set(di, fall)));
+    }
+    outside |= SignBits(rejected) << block;
+    partial |= SignBits(crossed) << block;
+  }
+  return {~outside, ~outside & ~partial};
+}
+
+// Depth-tests and writes the pixels of a vector for which `covered` holds; returns the depths afterwards.
+template <class M>
+HWY_INLINE VF WriteVector(VF z, M covered, std::uint32_t index, int p, TileState& state) {
+  float* depth = state.visibility->depth + p;
+  std::uint32_t* triangle = state.visibility->triangle + p;
+  const VF old = hn::Load(df, depth);
+  auto wins = hn::And(covered, hn::Gt(z, old));
+  const auto tied = hn::And(covered, hn::Eq(z, old));
+  if (HWY_UNLIKELY(!hn::AllFalse(df, tied))) {
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(df, tied, bits);
+    alignas(64) float lane_wins[kMaxLanes] = {};
+    for (unsigned rest = bits[0] | static_cast<unsigned>(bits[1]) << 8; rest != 0; rest &= rest - 1) {
+      const int lane = std::countr_zero(rest);
+      if (WinsTie(state.triangles, index, triangle[lane])) lane_wins[lane] = 1.0F;
+    }
+    wins = hn::Or(wins, hn::Gt(hn::Load(df, lane_wins), hn::Zero(df)));
+  }
+  const VF now = hn::IfThenElse(wins, z, old);
+  hn::Store(now, df, depth);
+  const auto wins_u = hn::RebindMask(du, wins);
+  hn::Store(hn::IfThenElse(wins_u, hn::Set(du, index), hn::Load(du, triangle)), du, triangle);
+  return now;
+}
+
+// A triangle's depth over the pixels of a block.
+class BlockDepth {
+ public:
+  // x, y: the block's first pixel from the triangle's reference pixel
+  HWY_INLINE BlockDepth(const DepthPlane& plane, int x, int y)
+      : plane_(plane), x_(static_cast<float>(x)), y_(static_cast<float>(y)) {}
+
+  HWY_INLINE VF At(int p) const {
+    const VF dx = hn::Add(hn::Set(df, x_), hn::Load(df, kBlockOffsets.column + p));
+    const VF dy = hn::Add(hn::Set(df, y_), hn::Load(df, kBlockOffsets.row + p));
+    const VF z = hn::Add(hn::Add(hn::Set(df, plane_.z), hn::Mul(hn::Set(df, plane_.dzdx), dx)),
+                         hn::Mul(hn::Set(df, plane_.dzdy), dy));
+    return hn::Min(hn::Max(z, hn::Set(df, plane_.lo)), hn::Set(df, plane_.hi));
+  }
+
+ private:
+  const DepthPlane& plane_;
+  float x_, y_;
+};
+
+// Change of an edge from the first pixel of a vector to its others: the same for every vector of a block.
+HWY_INLINE VI EdgeLanes(std::int32_t a, std::int32_t b) {
+  const VI lane = hn::Iota(di, 0);
+  const VI column = hn::And(lane, hn::Set(di, kBlockSize - 1));
+  const VI row = hn::ShiftRight<3>(lane);
+  return hn::Add(hn::Mul(hn::Set(di, a), column), hn::Mul(hn::Set(di, b), row));
+}
+
+// Draws the covered pixels with numbers [begin, end) of a block, whole vectors of them, and returns a depth that none
+// of them is behind. `N` edges are tested; c holds their values at the block's first pixel.
+template <int N>
+HWY_INLINE VF DrawBlockPixels(const TileEdges& edges, const std::int32_t* c, const BlockDepth& depth,
+                              std::uint32_t shade, int block, int begin, int end, TileState& state) {
+  const auto lanes = static_cast<int>(hn::Lanes(di));
+  VF deepest = hn::Set(df, 1.0F);
+  for (int p = begin; p < end; p += lanes) {
+    VI outside = hn::Zero(di);
+    for (int i = 0; i < N; ++i) {
+      const std::int32_t at_vector = c[i] + edges.a[i] * (p & (kBlockSize - 1)) + edges.b[i] * (p >> 3);
+      outside = hn::Or(outside, hn::Add(hn::Set(di, at_vector), EdgeLanes(edges.a[i], edges.b[i])));
+    }
+    const auto covered = hn::RebindMask(df, hn::Not(hn::Lt(outside, hn::Zero(di))));
+    deepest = hn::Min(deepest, WriteVector(depth.At(p), covered, shade, block * kBlockPixels + p, state));
+  }
+  return deepest;
+}
+
+// Triangles within a few blocks: every vector under the box is tested against all crossing edges.
+template <int N>
+void DrawMedium(const LargeTriangle& triangle, const TileEdges& edges, const TileBox& box, int x0, int y0,
+                TileState& state) {
+  const auto lanes = static_cast<int>(hn::Lanes(di));
+  for (int by = box.y_min & ~7; by <= box.y_max; by += kBlockSize) {
+    const int begin = (std::max(box.y_min - by, 0) * kBlockSize) & ~(lanes - 1);
+    const int end = (std::min(box.y_max - by, kBlockSize - 1) + 1) * kBlockSize;
+    for (int bx = box.x_min & ~7; bx <= box.x_max; bx += kBlockSize) {
+      const int block = by + bx / kBlockSize;
+      if (triangle.depth.hi < state.farthest[block]) continue;
+      std::int32_t c[3];
+      for (int i = 0; i < N; ++i) c[i] = edges.c[i] + edges.a[i] * bx + edges.b[i] * by;
+      const BlockDepth depth(triangle.depth, x0 + bx - triangle.ref_x, y0 + by - triangle.ref_y);
+      DrawBlockPixels<N>(edges, c, depth, triangle.shade, block, begin, end, state);
+    }
+  }
+}
+
+// Triangles over many blocks: blocks are sorted out first.
+template <int N>
+void DrawBig(const LargeTriangle& triangle, const TileEdges& edges, const TileBox& box, int x0, int y0,
+             TileState& state) {
+  const BlockMasks blocks = ClassifyBlocks(edges);
+  for (std::uint64_t rest = blocks.touched & BlocksUnder(box); rest != 0; rest &= rest - 1) {
+    const int block = std::countr_zero(rest);
+    if (triangle.depth.hi < state.farthest[block]) continue;
+    const int bx = (block % kBlocksPerTileSide) * kBlockSize;
+    const int by = (block / kBlocksPerTileSide) * kBlockSize;
+    const BlockDepth depth(triangle.depth, x0 + bx - triangle.ref_x, y0 + by - triangle.ref_y);
+    VF deepest;
+    if ((blocks.full >> block & 1U) != 0) {
+      deepest = DrawBlockPixels<0>(edges, nullptr, depth, triangle.shade, block, 0, kBlockPixels, state);
+    } else {
+      std::int32_t c[3];
+      for (int i = 0; i < N; ++i) c[i] = edges.c[i] + edges.a[i] * bx + edges.b[i] * by;
+      deepest = DrawBlockPixels<N>(edges, c, depth, triangle.shade, block, 0, kBlockPixels, state);
+    }
+    state.farthest[block] = hn::GetLane(hn::MinOfLanes(df, deepest));
+  }
+}
+
+constexpr int kMediumSize = 24;  // pixels per side; beyond, sorting out blocks pays
+
+void DrawLarge(const LargeTriangle& triangle, int x0, int y0, TileState& state) {
+  TileEdges edges;
+  if (!EdgesInTile(triangle, x0, y0, edges)) return;
+  const TileBox box = BoxInTile(triangle, x0, y0);
+  const bool medium = box.x_max - box.x_min < kMediumSize && box.y_max - box.y_min < kMediumSize;
+  const auto draw = [&]<int N>(std::integral_constant<int, N>) {
+    medium ? DrawMedium<N>(triangle, edges, box, x0, y0, state) : DrawBig<N>(triangle, edges, box, x0, y0, state);
+  };
+  switch (edges.count) {
+    case 0:
+      return draw(std::integral_constant<int, 0>{});
+    case 1:
+      return draw(std::integral_constant<int, 1>{});
+    case 2:
+      return draw(std::integral_constant<int, 2>{});
+    default:
+      return draw(std::integral_constant<int, 3>{});
+  }
+}
+
+void Clear(TileVisibility& tile) {
+  const auto lanes = static_cast<int>(hn::Lanes(df));
+  for (int p = 0; p < kTilePixels; p += lanes) {
+    hn::Store(hn::Zero(df), df, tile.depth + p);
+    hn::Store(hn::Set(du, kNoTriangle), du, tile.triangle + p);
+  }
+}
+
+void RasterTile(std::span<const TileEntries> entries, const ShadeTriangle* triangles, int x0, int y0,
+                TileVisibility& out) {
+  Clear(out);
+  TileState state{&out, triangles, {}};
+  for (const TileEntries& list : entries)
+    for (const Binner::Chunk* chunk = list.chunks; chunk != nullptr; chunk = chunk->next)
+      for (int i = 0; i < chunk->count; ++i) {
+        const BinEntry& entry = chunk->entries[i];
+        if (entry.mask != 0)
+          DrawSmall(entry, x0, y0, state);
+        else
+          DrawLarge(list.large[entry.index], x0, y0, state);
+      }
+}
+
+}  // namespace sheaf::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sheaf::raster {
+HWY_EXPORT(RasterTile);
+void rasterTile(std::span<const TileEntries> entries, const ShadeTriangle* triangles, int x0, int y0,
+                TileVisibility& out) {
+  HWY_DYNAMIC_DISPATCH(RasterTile)(entries, triangles, x0, y0, out);
+}
+}  // namespace sheaf::raster
+#endif

@@ -1,0 +1,77 @@
+#include "mesh/weld.h"
+
+#include <doctest/doctest.h>
+
+#include <limits>
+
+#include "mesh/normals.h"
+#include "tests/mesh/meshes.h"
+
+namespace sheaf::mesh {
+
+TEST_CASE("mesh/weld: unsharing and welding gives the same surface with the first vertices kept in order") {
+  const Mesh sphere = makeSphere(40, 60);
+  Mesh m = sphere;
+  makeFlatNormals(m);
+  m.normals.clear();
+  const std::size_t corners = m.vertexCount();
+  CHECK(weldVertices(m) == corners - sphere.vertexCount());
+  REQUIRE(m.vertexCount() == sphere.vertexCount());
+  std::uint32_t seen = 0;
+  for (std::size_t f = 0; f < m.triangleCount(); ++f)
+    for (std::size_t k = 0; k < 3; ++k) {
+      CHECK(m.positions[m.triangles[f][k]] == sphere.positions[sphere.triangles[f][k]]);
+      CHECK(m.triangles[f][k] <= seen);
+      if (m.triangles[f][k] == seen) ++seen;
+    }
+  CHECK(weldVertices(m) == 0);
+}
+
+TEST_CASE("mesh/weld: every attribute counts") {
+  Mesh m;
+  m.positions.assign(6, Vec3(1.0F));
+  m.normals.assign(6, Vec3(0.0F, 1.0F, 0.0F));
+  m.texcoords.assign(6, Vec2(0.5F));
+  m.colors.assign(6, Vec4(1.0F));
+  m.normals[1] = {1.0F, 0.0F, 0.0F};
+  m.texcoords[2].y = 0.25F;
+  m.colors[3].w = 0.5F;
+  m.positions[4].z = 2.0F;
+  m.triangles = {{0, 1, 2}, {3, 4, 5}};
+  CHECK(weldVertices(m) == 1);
+  CHECK(m.triangles[1] == Triangle{3, 4, 0});
+  CHECK(m.colors[3].w == 0.5F);
+}
+
+TEST_CASE("mesh/weld: zeros of both signs are one, NaN is none") {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  Mesh m;
+  m.positions = {{0.0F, 0.0F, 0.0F}, {-0.0F, 0.0F, -0.0F}, {nan, 0.0F, 0.0F}, {nan, 0.0F, 0.0F}};
+  m.triangles = {{0, 1, 2}, {1, 2, 3}};
+  CHECK(weldVertices(m) == 1);
+  CHECK(m.vertexCount() == 3);
+  CHECK(m.triangles[0] == Triangle{0, 0, 1});
+  CHECK(m.triangles[1] == Triangle{0, 1, 2});
+}
+
+TEST_CASE("mesh/weld: many vertices at one place and no vertex at all") {
+  Mesh m;
+  CHECK(weldVertices(m) == 0);
+  m.positions.assign(100'000, Vec3(3.0F));
+  CHECK(weldVertices(m) == 99'999);
+}
+
+TEST_CASE("mesh/weld: triangles that cannot be drawn are dropped, the others keep their order") {
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  Mesh m = makeGrid(1);
+  m.positions.insert(m.positions.end(), {{nan, 0, 0}, {0, inf, 0}, {0, 0, -inf}});
+  m.triangles = {{0, 1, 4}, {0, 1, 3}, {5, 1, 3}, {0, 3, 2}, {0, 6, 2}};
+  CHECK(dropUnusableTriangles(m) == 3);
+  REQUIRE(m.triangleCount() == 2);
+  CHECK(m.triangles[0] == Triangle{0, 1, 3});
+  CHECK(m.triangles[1] == Triangle{0, 3, 2});
+  CHECK(m.vertexCount() == 7);
+  CHECK(dropUnusableTriangles(m) == 0);
+}
+
+}  // namespace sheaf::mesh

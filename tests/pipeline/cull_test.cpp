@@ -1,0 +1,135 @@
+#include "pipeline/cull.h"
+
+#include <doctest/doctest.h>
+
+#include <random>
+
+namespace sheaf::pipeline {
+namespace {
+
+struct RandomView {
+  View view;
+  scenes::Instance instance;
+};
+
+// A random perspective or parallel view of a randomly placed, sometimes mirrored instance.
+RandomView randomView(std::mt19937& rng) {
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  DMat4 world_from_object(1.0);
+  for (int c = 0; c < 4; ++c)
+    for (int r = 0; r < 3; ++r) world_from_object[c][r] = unit(rng) + (c == r ? 1.0 : 0.0);
+  const DVec3 eye(3.0 * unit(rng), 3.0 * unit(rng), 3.0 * unit(rng));
+  const DVec3 forward = glm::normalize(DVec3(unit(rng), unit(rng), unit(rng)));
+  const DVec3 right = glm::normalize(glm::cross(forward, DVec3(0.0, 1.0, 0.001)));
+  const DVec3 up = glm::cross(right, forward);
+  DMat4 view_from_world(1.0);
+  for (int c = 0; c < 3; ++c) {
+    view_from_world[c][0] = right[c];
+    view_from_world[c][1] = up[c];
+    view_from_world[c][2] = -forward[c];
+  }
+  view_from_world[3] = DVec4(-glm::dot(right, eye), -glm::dot(up, eye), glm::dot(forward, eye), 1.0);
+  const double near = 0.1;
+  const double far = 8.0;
+  DMat4 clip_from_view(0.0);
+  DVec4 eye_world(eye, 1.0);
+  if (unit(rng) < 0.0) {
+    clip_from_view[0][0] = clip_from_view[1][1] = 1.3;
+    clip_from_view[2][2] = near / (far - near);
+    clip_from_view[3][2] = near * far / (far - near);
+    clip_from_view[2][3] = -1.0;
+  } else {
+    clip_from_view[0][0] = clip_from_view[1][1] = 0.7;
+    clip_from_view[2][2] = 1.0 / (far - near);
+    clip_from_view[3][2] = far / (far - near);
+    clip_from_view[3][3] = 1.0;
+    eye_world = DVec4(-forward, 0.0);
+  }
+  return {{clip_from_view * view_from_world, eye_world, Viewport(64, 64)}, {0, 0, world_from_object}};
+}
+
+}  // namespace
+
+TEST_CASE("pipeline/cull: a rejected patch has no point in view, an inner one none that must be clipped") {
+  std::mt19937 rng(42);
+  std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+  int outside = 0;
+  int inside = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const RandomView random = randomView(rng);
+    grouping::Patch patch;
+    const Vec3 center(2.0F * unit(rng), 2.0F * unit(rng), 2.0F * unit(rng));
+    std::array<Vec3, 30> points;
+    for (Vec3& p : points) {
+      p = center + 0.4F * Vec3(unit(rng), unit(rng), unit(rng));
+      patch.bounds.extend(p);
+    }
+    const InstanceView view = viewInstance(random.instance, patch.bounds, random.view, true);
+    const PatchVisibility seen = classifyPatch(patch, view, true);
+    CHECK(view.visible == (seen != PatchVisibility::kOutside));
+    outside += seen == PatchVisibility::kOutside;
+    inside += seen == PatchVisibility::kInside;
+    std::int32_t any = 0;
+    std::int32_t all = -1;
+    for (const Vec3& p : points) {
+      const std::int32_t code = outcodeVertex(transformVertex(p, view.clip_from_object), random.view.viewport);
+      any |= code;
+      all &= code;
+    }
+    if (seen == PatchVisibility::kOutside) CHECK((all & kOutsideBits) != 0);
+    if (seen == PatchVisibility::kInside) CHECK((any & kClipBits) == 0);
+  }
+  CHECK(outside > 200);
+  CHECK(inside > 200);
+}
+
+TEST_CASE("pipeline/cull: a patch rejected by its cone shows no front face") {
+  std::mt19937 rng(43);
+  std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+  int rejected = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const RandomView random = randomView(rng);
+    const Vec3 axis = glm::normalize(Vec3(unit(rng), unit(rng), unit(rng)));
+    grouping::Patch patch;
+    patch.cone.axis = axis;
+    std::vector<std::array<Vec3, 3>> triangles;
+    float min_cos = 1.0F;
+    for (int t = 0; t < 20; ++t) {
+      const Vec3 p = 0.3F * Vec3(unit(rng), unit(rng), unit(rng));
+      const Vec3 n = glm::normalize(axis + 0.4F * Vec3(unit(rng), unit(rng), unit(rng)));
+      const Vec3 a = glm::normalize(glm::cross(n, Vec3(0.3F, 0.5F, 0.7F)));
+      const Vec3 b = glm::cross(n, a);
+      triangles.push_back({p, p + 0.1F * a, p + 0.1F * b});
+      for (const Vec3& corner : triangles.back()) patch.bounds.extend(corner);
+      min_cos = std::min(min_cos, glm::dot(n, axis));
+    }
+    patch.cone.sin_angle = std::sqrt(1.0F - min_cos * min_cos) + 1e-4F;
+    const InstanceView view = viewInstance(random.instance, patch.bounds, random.view, true);
+    if (classifyPatch(patch, view, true) != PatchVisibility::kBackFacing) continue;
+    ++rejected;
+    CHECK(classifyPatch(patch, view, false) != PatchVisibility::kBackFacing);
+    for (const auto& t : triangles) {
+      // Seen from the eye in world space; a mirroring transform turns the winding, not the side.
+      std::array<DVec3, 3> w;
+      for (std::size_t k = 0; k < 3; ++k) w[k] = DVec3(random.instance.world_from_object * DVec4(t[k], 1.0));
+      DVec3 normal = glm::cross(w[1] - w[0], w[2] - w[0]);
+      if (view.mirrored) normal = -normal;
+      const DVec4 eye = random.view.eye_world;
+      const DVec3 to_eye = eye.w == 0.0 ? DVec3(eye) : DVec3(eye) - w[0];
+      CHECK(glm::dot(normal, to_eye) <= 1e-6);
+    }
+  }
+  CHECK(rejected > 100);
+}
+
+TEST_CASE("pipeline/cull: without culling everything is visible") {
+  std::mt19937 rng(44);
+  for (int i = 0; i < 50; ++i) {
+    const RandomView random = randomView(rng);
+    Box3 far_away;
+    far_away.extend(Vec3(1e4F));
+    CHECK(viewInstance(random.instance, far_away, random.view, false).visible);
+  }
+}
+
+}  // namespace sheaf::pipeline

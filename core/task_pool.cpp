@@ -1,5 +1,6 @@
 #include "core/task_pool.h"
 
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -9,7 +10,10 @@
 namespace sheaf {
 
 struct TaskPool::Arena {
-  explicit Arena(int threads) : arena(threads) {}
+  explicit Arena(int threads)
+      : limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)), arena(threads) {}
+  // oneTBB starts no more threads than there are cores unless it is told to.
+  tbb::global_control limit;
   tbb::task_arena arena;
 };
 

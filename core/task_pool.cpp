@@ -1,5 +1,6 @@
 #include "core/task_pool.h"
 
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -9,7 +10,13 @@
 namespace sheaf {
 
 struct TaskPool::Arena {
-  explicit Arena(int threads) : arena(threads) {}
+  explicit Arena(int threads)
+      : more_than_cores(tbb::global_control::max_allowed_parallelism,
+                        std::max(static_cast<std::size_t>(threads),
+                                 tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism))),
+        arena(threads) {}
+  // Else oneTBB says on stderr that it ignores what exceeds the number of cores.
+  tbb::global_control more_than_cores;
   tbb::task_arena arena;
 };
 

@@ -132,7 +132,8 @@ std::size_t headerSize(std::string_view bytes, std::size_t end_of_keyword, std::
 }
 
 Header parseHeader(std::string_view bytes, std::string_view name) {
-  if (!bytes.starts_with("ply")) refuse(name, "is not a PLY file: it does not begin with 'ply'");
+  if (!bytes.starts_with("ply\n") && !bytes.starts_with("ply\r"))
+    refuse(name, "is not a PLY file: it does not begin with 'ply'");
   TextScanner scanner(bytes, name, '\0');
   scanner.skipLine();
   Header header;

@@ -234,7 +234,7 @@ void compare(const Case& which, const Options& options) {
   const auto [lowest, highest] = std::minmax_element(row.ratios.begin(), row.ratios.end());
   fmt::print("{:30} {:9} {:8.1f} % {:9.2f} {:9.2f} {:7.1f}x {:6.1f}..{:.1f} {:9.3f}\n", which.name,
              counters.triangles_in,
-             100.0 * static_cast<double>(counters.triangles_in - counters.triangles_outside) /
+             100.0 * static_cast<double>(counters.triangles_assembled - counters.triangles_outside) /
                  static_cast<double>(counters.triangles_in),
              median(row.sheaf_ms), median(row.llvmpipe_ms), median(row.ratios), *lowest, *highest, difference.rms);
   std::fflush(stdout);

@@ -14,6 +14,12 @@ struct TaskPool::Arena {
       : limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)), arena(threads) {}
   // oneTBB starts no more threads than there are cores unless it is told to.
   tbb::global_control limit;
+      : more_than_cores(tbb::global_control::max_allowed_parallelism,
+                        std::max(static_cast<std::size_t>(threads),
+                                 tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism))),
+        arena(threads) {}
+  // Else oneTBB says on stderr that it ignores what exceeds the number of cores.
+  tbb::global_control more_than_cores;
   tbb::task_arena arena;
 };
 

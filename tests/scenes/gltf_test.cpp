@@ -382,6 +382,9 @@ TEST_CASE("scenes/gltf: refusals name the place and the reason") {
   CHECK(refused([](json& r) { r["nodes"][0]["mesh"] = 5; }) == "a.glb: mesh 5 does not exist, there are 1");
   CHECK(refused([](json& r) { r["nodes"][0]["children"] = {0}; }) ==
         "a.glb: node 0 has two parents or is its own ancestor");
+  CHECK(refused([](json& r) {
+          r["nodes"][0]["scale"] = {1e300, 1, 1};
+        }) == "a.glb: node 0 has a transform that is not finite");
   CHECK(refused([](json& r) { r["scene"] = 4; }) == "a.glb: scene 4 does not exist, there are 1");
   CHECK(refused([](json& r) { r["meshes"][0]["primitives"][0]["material"] = 4; }) ==
         "a.glb: material 4 does not exist, there are 0");

@@ -51,6 +51,12 @@ TEST_CASE("scenes/load: z_up turns +Z to +Y and keeps the handedness") {
   CHECK(glm::determinant(m) == doctest::Approx(1.0));
 }
 
+TEST_CASE("scenes/load: texture coordinates that are not finite become 0") {
+  const mesh::Mesh m =
+      loadText("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt nan 0\nvt 0.5 inf\nf 1/1 2/2 3/2\n").meshes.at(0);
+  CHECK(m.texcoords == std::vector<Vec2>(3, Vec2(0)));
+}
+
 TEST_CASE("scenes/load: the crease angle decides which edges stay sharp") {
   const std::string bent = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 -1\nf 1 2 3\nf 2 1 4\n";
   ImportOptions sharp;

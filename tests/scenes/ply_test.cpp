@@ -94,6 +94,16 @@ TEST_CASE("scenes/ply: other elements and properties are skipped") {
   CHECK(m.positions == std::vector<Vec3>{{0.5F, 0, 0}, {1, 0, 0}, {0, 1, 0}});
 }
 
+TEST_CASE("scenes/ply: a texture named in a comment") {
+  const TestFolder folder;
+  folder.write("my paint.png", tinyPng());
+  std::string text = header("ascii", "property float u\nproperty float v\n", 3, 1);
+  text.replace(text.find("made by a test"), 14, "TextureFile my paint.png");
+  const Scene scene = loadScene(folder.write("a.ply", text + "0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n"));
+  CHECK(scene.materials.at(0).base_color_texture.texture == 0);
+  CHECK(scene.textures.at(0).pixels.width() == 2);
+}
+
 TEST_CASE("scenes/ply: a concave polygon is cut inside its outline") {
   const std::string text = header("ascii", "", 4, 1) + "0 0 0\n4 0 0\n1 1 0\n0 4 0\n4 1 2 3 0\n";
   const mesh::Mesh m = loadText("a.ply", text).meshes.at(0);

@@ -68,8 +68,7 @@ struct View {
 // The other side shades one way only: textures, solid textures, vertex colours and highlights are taken off.
 void makePlain(scenes::Scene& scene) {
   for (scenes::Material& material : scene.materials) {
-    if (material.solid != scenes::Solid::kNone || material.base_color_texture.texture >= 0)
-      material.base_color = Vec4(0.7F, 0.6F, 0.5F, 1.0F);
+    if (material.base_color == Vec4(1.0F)) material.base_color = Vec4(0.6F, 0.55F, 0.5F, 1.0F);
     material.base_color_texture = {};
     material.solid = scenes::Solid::kNone;
     material.specular = 0.0F;

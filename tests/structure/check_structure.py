@@ -1,9 +1,10 @@
 """Checks of the source tree that no compiler makes.
 
-usage: check_structure.py {arrows|lines} ROOT
+usage: check_structure.py {arrows|lines|citations} ROOT
 
-arrows  an include names a module that the including module may know (docs/architecture.md)
-lines   no line of a source, script or build file is longer than 120 characters
+arrows     an include names a module that the including module may know (docs/architecture.md)
+lines      no line of a source, script or build file is longer than 120 characters
+citations  every key such as [Pin88] in a comment is in docs/references.md
 
 Prints one line `file:line: reason` per finding; exits with 1 if there are any.
 """
@@ -26,6 +27,7 @@ SOURCES = {".cpp", ".h"}
 OTHERS = {".py", ".cmake", ".in", ".txt"}
 LINE_LENGTH = 120
 
+CITATION = re.compile(r"\[([A-Z][A-Za-z]*[0-9]{2}|H99|PG|LG|HFC)\]")
 INCLUDE = re.compile(r'\s*#\s*include\s*["<]([^">]+)[">]')
 
 
@@ -69,7 +71,18 @@ def find_long_lines(root):
                     yield f"{path}:{number}: {len(line)} characters, at most {LINE_LENGTH}"
 
 
-CHECKS = {"arrows": find_wrong_arrows, "lines": find_long_lines}
+def find_unknown_citations(root):
+    known = set(re.findall(r"\*\*\[(\w+)\]\*\*", (root / "docs/references.md").read_text(encoding="utf-8")))
+    for path in files_of(root):
+        if path.suffix not in SOURCES:
+            continue
+        for number, line in lines_of(root, path):
+            for key in CITATION.findall(line.partition("//")[2]):
+                if key not in known:
+                    yield f"{path}:{number}: [{key}] is not in docs/references.md"
+
+
+CHECKS = {"arrows": find_wrong_arrows, "lines": find_long_lines, "citations": find_unknown_citations}
 
 
 def main(arguments):

@@ -47,6 +47,13 @@ class Findings(unittest.TestCase):
             "scripts/run:1: 121 characters, at most 120",
         ])
 
+    def test_citations(self):
+        found = self.findings(check_structure.find_unknown_citations, {
+            "docs/references.md": "- **[AB12]** A, B.\n",
+            "core/a.h": "x[1];  // [AB12]\n/// [AB12] and [CD34] eq. 2\nkeys[AB99] = 0;\n",
+        })
+        self.assertEqual(found, ["core/a.h:2: [CD34] is not in docs/references.md"])
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -1,23 +1,27 @@
-// Links what a static library drags along: headers of every module, and code that needs the library's own dependencies.
-#include <atomic>
+// Draws a sphere: uses headers of every module, and links what a static library drags along.
 #include <cstdio>
 
 #include "core/task_pool.h"
-#include "grouping/patches.h"
-#include "mesh/mesh.h"
+#include "pipeline/prepare.h"
 #include "pipeline/renderer.h"
-#include "raster/texture.h"
-#include "scenes/scene.h"
+#include "scenes/builtin.h"
+#include "scenes/camera.h"
 
 int main() {
-  sheaf::mesh::Mesh triangle;
-  triangle.positions = {{0, 0, 0}, {2, 0, 0}, {0, 3, 0}};
-  triangle.triangles = {{0, 1, 2}};
-  const sheaf::Vec3 size = sheaf::mesh::boundsOf(triangle).size();
+  sheaf::TaskPool pool(2);
+  sheaf::scenes::Scene scene = sheaf::scenes::buildBuiltin("sphere?n=8");
+  sheaf::pipeline::RenderSettings settings;
+  settings.width = 64;
+  settings.height = 48;
+  sheaf::scenes::Camera camera =
+      sheaf::scenes::fitCamera(scene, sheaf::scenes::namedView("iso"), 64.0 / 48.0, sheaf::radians(40.0), false);
+  camera = sheaf::scenes::fitClipPlanes(camera, sheaf::scenes::boundsOf(scene));
+  const sheaf::pipeline::PreparedScene prepared = sheaf::pipeline::prepareScene(std::move(scene), pool);
 
-  std::atomic<int> pieces{0};
-  sheaf::TaskPool(2).parallelFor(10, [&](int, int) { ++pieces; });
-
-  std::printf("bounds %g x %g, %d pieces\n", size.x, size.y, pieces.load());
-  return size == sheaf::Vec3(2, 3, 0) && pieces == 10 ? 0 : 1;
+  sheaf::pipeline::Renderer renderer(pool);
+  sheaf::pipeline::Frame frame;
+  renderer.render(prepared, camera, settings, frame);
+  const bool drawn = frame.color.at(32, 24).a == 255 && frame.color.at(0, 0).a == 0;
+  std::printf("%d x %d pixels, %s\n", frame.color.width(), frame.color.height(), drawn ? "a sphere" : "no sphere");
+  return drawn ? 0 : 1;
 }

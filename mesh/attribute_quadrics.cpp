@@ -19,7 +19,17 @@ AttributeQuadrics::AttributeQuadrics(const Mesh& wedges, std::span<const Triangl
   wedges_.resize(wedges.vertexCount());
   linears_.resize(wedges.vertexCount() * weight_.size());
   sums_.resize(weight_.size());
+  errors_.resize(points.size());
   for (std::size_t f = 0; f < corner_wedges_.size(); ++f) addTriangle(corner_wedges_[f], corner_points[f], points);
+  std::vector<std::uint8_t> counted(wedges_.size(), 0);
+  for (std::size_t f = 0; f < corner_wedges_.size(); ++f)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t w = corner_wedges_[f][k];
+      if (counted[w] != 0) continue;
+      counted[w] = 1;
+      wedges_[w].error = errorOf(wedges_[w].square, linearsOf(w), wedges_[w].area);
+      errors_[corner_points[f][k]] += wedges_[w].error;
+    }
   if (!wedges.colors.empty()) {
     color_lo_ = color_hi_ = wedges.colors[0];
     for (const Vec4& c : wedges.colors) {
@@ -68,95 +78,107 @@ void AttributeQuadrics::addTriangle(const Triangle& wedges, const Triangle& poin
   }
 }
 
-bool AttributeQuadrics::isSeam(CollapseMesh& topology, std::uint32_t a, std::uint32_t b) {
+std::span<AttributeQuadrics::Linear> AttributeQuadrics::linearsOf(std::uint32_t wedge) {
+  return std::span(linears_).subspan(wedge * weight_.size(), weight_.size());
+}
+
+std::uint32_t AttributeQuadrics::wedgeAt(const CollapseMesh& topology, std::uint32_t triangle,
+                                         std::uint32_t point) const {
+  const Triangle& points = topology.triangle(triangle);
+  const Triangle& wedges = corner_wedges_[triangle];
+  return points[0] == point ? wedges[0] : points[1] == point ? wedges[1] : wedges[2];
+}
+
+bool AttributeQuadrics::isSeam(CollapseMesh& topology, std::uint32_t a, std::uint32_t b) const {
   std::uint32_t at_a = 0, at_b = 0;
   bool first = true, seam = false;
-  topology.forEachCorner(a, [&](CollapseMesh::Corner c) {
-    const std::uint32_t k = c % 3;
-    std::uint32_t other = CollapseMesh::after(k);
-    if (topology.lastPoint(c) == b)
-      other = CollapseMesh::after(other);
-    else if (topology.nextPoint(c) != b)
-      return;
-    const Triangle& w = corner_wedges_[c / 3];
-    seam = seam || (!first && (w[k] != at_a || w[other] != at_b));
-    at_a = w[k];
-    at_b = w[other];
+  topology.forEachTriangleOnEdge(a, b, [&](std::uint32_t f) {
+    const std::uint32_t wedge_a = wedgeAt(topology, f, a), wedge_b = wedgeAt(topology, f, b);
+    seam = seam || (!first && (wedge_a != at_a || wedge_b != at_b));
+    at_a = wedge_a;
+    at_b = wedge_b;
     first = false;
   });
   return seam;
 }
 
-std::uint32_t& AttributeQuadrics::groupOf(std::uint32_t wedge) {
-  for (Group& g : groups_)
-    if (g.wedge == wedge) return g.group;
-  groups_.push_back({wedge, wedge});
-  return groups_.back().group;
-}
-
-void AttributeQuadrics::unite(std::uint32_t wedge, std::uint32_t other) {
-  const std::uint32_t from = groupOf(other), to = groupOf(wedge);
-  for (Group& g : groups_)
-    if (g.group == from) g.group = to;
+std::uint32_t AttributeQuadrics::targetOf(std::uint32_t wedge) const {
+  for (const Merged& m : merged_)
+    if (m.wedge == wedge) return m.into;
+  return wedge;
 }
 
 // A triangle on the edge has a wedge at each end: they become one. Wedges on no such triangle stay by themselves.
-void AttributeQuadrics::groupWedges(CollapseMesh& topology, std::uint32_t a, std::uint32_t b) {
-  groups_.clear();
-  topology.forEachCorner(a, [&](CollapseMesh::Corner c) {
-    const Triangle& w = corner_wedges_[c / 3];
-    const std::uint32_t k = c % 3;
-    groupOf(w[k]);
-    if (topology.nextPoint(c) == b) unite(w[k], w[CollapseMesh::after(k)]);
-    if (topology.lastPoint(c) == b) unite(w[k], w[CollapseMesh::after(CollapseMesh::after(k))]);
+void AttributeQuadrics::findMerged(CollapseMesh& topology, std::uint32_t a, std::uint32_t b) {
+  merged_.clear();
+  topology.forEachTriangleOnEdge(a, b, [&](std::uint32_t f) {
+    const std::uint32_t wedges[2] = {wedgeAt(topology, f, a), wedgeAt(topology, f, b)};
+    const std::uint32_t targets[2] = {targetOf(wedges[0]), targetOf(wedges[1])};
+    const std::uint32_t into = std::min(targets[0], targets[1]);
+    for (const std::uint32_t w : wedges)
+      if (std::none_of(merged_.begin(), merged_.end(), [w](const Merged& m) { return m.wedge == w; }))
+        merged_.push_back({w, into});
+    for (Merged& m : merged_)
+      if (m.into == targets[0] || m.into == targets[1]) m.into = into;
   });
-  topology.forEachCorner(b, [&](CollapseMesh::Corner c) { groupOf(corner_wedges_[c / 3][c % 3]); });
 }
 
-// The attributes of a group are free: for a place x the best of attribute k is (G_k.x + D_k) / area, which leaves a
-// quadric of x alone ([H99] with the attribute block, which is area * I, eliminated).
-Quadric AttributeQuadrics::eliminated(std::uint32_t group) {
-  Quadric total;
+// The best value of attribute k at x is (G_k.x + D_k) / area, which leaves a quadric of x alone: [H99] with the
+// attribute block, which is area * I, eliminated.
+Quadric AttributeQuadrics::errorOf(const Quadric& square, std::span<const Linear> linears, double area) const {
+  Quadric error = square;
+  if (area > 0.0)
+    for (const Linear& l : linears) error += Quadric::ofPlane(l.g, l.d, -1.0 / area);
+  return error;
+}
+
+// Of the wedges that become one, as one.
+Quadric AttributeQuadrics::mergedErrorOf(std::uint32_t into) {
+  Quadric square;
   double area = 0.0;
   std::fill(sums_.begin(), sums_.end(), Linear{});
-  for (const Group& g : groups_) {
-    if (g.group != group) continue;
-    total += wedges_[g.wedge].square;
-    area += wedges_[g.wedge].area;
+  for (const Merged& m : merged_) {
+    if (m.into != into) continue;
+    square += wedges_[m.wedge].square;
+    area += wedges_[m.wedge].area;
+    const std::span<const Linear> linears = linearsOf(m.wedge);
     for (std::size_t k = 0; k < sums_.size(); ++k) {
-      const Linear& l = linears_[g.wedge * sums_.size() + k];
-      sums_[k].g += l.g;
-      sums_[k].d += l.d;
+      sums_[k].g += linears[k].g;
+      sums_[k].d += linears[k].d;
     }
   }
-  if (!(area > 0.0)) return total;
-  for (const Linear& l : sums_) total += Quadric::ofPlane(l.g, l.d, -1.0 / area);
-  return total;
+  return errorOf(square, sums_, area);
 }
 
 Quadric AttributeQuadrics::mergedError(CollapseMesh& topology, std::uint32_t a, std::uint32_t b) {
-  groupWedges(topology, a, b);
-  Quadric total;
-  for (const Group& g : groups_)
-    if (g.wedge == g.group) total += eliminated(g.group);
+  findMerged(topology, a, b);
+  Quadric total = errors_[a] + errors_[b];
+  for (const Merged& m : merged_) {
+    total -= wedges_[m.wedge].error;
+    if (m.wedge == m.into) total += mergedErrorOf(m.into);
+  }
   return total;
 }
 
 void AttributeQuadrics::collapse(CollapseMesh& topology, std::uint32_t a, std::uint32_t b) {
-  groupWedges(topology, a, b);
-  const std::size_t n = weight_.size();
-  for (const Group& g : groups_) {
-    if (g.wedge == g.group) continue;
-    wedges_[g.group].square += wedges_[g.wedge].square;
-    wedges_[g.group].area += wedges_[g.wedge].area;
-    for (std::size_t k = 0; k < n; ++k) {
-      linears_[g.group * n + k].g += linears_[g.wedge * n + k].g;
-      linears_[g.group * n + k].d += linears_[g.wedge * n + k].d;
+  errors_[a] = mergedError(topology, a, b);
+  for (const Merged& m : merged_) {
+    if (m.wedge == m.into) continue;
+    wedges_[m.into].square += wedges_[m.wedge].square;
+    wedges_[m.into].area += wedges_[m.wedge].area;
+    const std::span<Linear> to = linearsOf(m.into);
+    const std::span<const Linear> from = linearsOf(m.wedge);
+    for (std::size_t k = 0; k < to.size(); ++k) {
+      to[k].g += from[k].g;
+      to[k].d += from[k].d;
     }
   }
+  for (const Merged& m : merged_)
+    if (m.wedge == m.into)
+      wedges_[m.into].error = errorOf(wedges_[m.into].square, linearsOf(m.into), wedges_[m.into].area);
   const auto relabel = [&](CollapseMesh::Corner c) {
     std::uint32_t& w = corner_wedges_[c / 3][c % 3];
-    w = groupOf(w);
+    w = targetOf(w);
   };
   topology.forEachCorner(a, relabel);
   topology.forEachCorner(b, relabel);

@@ -25,7 +25,7 @@ class AttributeQuadrics {
                     const AttributeWeights& weights);
 
   /// True if the triangles on the edge between two points do not agree on the wedges at its ends.
-  bool isSeam(CollapseMesh& topology, std::uint32_t a, std::uint32_t b);
+  bool isSeam(CollapseMesh& topology, std::uint32_t a, std::uint32_t b) const;
 
   /// The error as a function of place alone, if b is merged into a and the attributes are chosen best for each place.
   Quadric mergedError(CollapseMesh& topology, std::uint32_t a, std::uint32_t b);
@@ -47,26 +47,30 @@ class AttributeQuadrics {
   struct Wedge {
     Quadric square;  ///< sum of area * (g.x + d)^2 over triangles and attributes
     double area = 0.0;
+    Quadric error;  ///< with the attributes chosen best for each place
   };
-  /// Wedges that would become one.
-  struct Group {
+  /// A wedge that an edge's contraction merges, and the least wedge that it is merged with.
+  struct Merged {
     std::uint32_t wedge;
-    std::uint32_t group;
+    std::uint32_t into;
   };
 
   double weightedValue(std::uint32_t wedge, std::size_t attribute) const;
   void addTriangle(const Triangle& wedges, const Triangle& points, std::span<const DVec3> positions);
-  void groupWedges(CollapseMesh& topology, std::uint32_t a, std::uint32_t b);
-  std::uint32_t& groupOf(std::uint32_t wedge);
-  void unite(std::uint32_t wedge, std::uint32_t other);
-  Quadric eliminated(std::uint32_t group);
+  std::uint32_t wedgeAt(const CollapseMesh& topology, std::uint32_t triangle, std::uint32_t point) const;
+  void findMerged(CollapseMesh& topology, std::uint32_t a, std::uint32_t b);
+  std::uint32_t targetOf(std::uint32_t wedge) const;
+  Quadric errorOf(const Quadric& square, std::span<const Linear> linears, double area) const;
+  Quadric mergedErrorOf(std::uint32_t into);
+  std::span<Linear> linearsOf(std::uint32_t wedge);
 
   const Mesh& source_;
   std::vector<double> weight_;  // per attribute
   std::vector<Triangle> corner_wedges_;
   std::vector<Wedge> wedges_;
   std::vector<Linear> linears_;  // #attributes per wedge
-  std::vector<Group> groups_;    // scratch
+  std::vector<Quadric> errors_;  // per point: sum over its wedges
+  std::vector<Merged> merged_;   // scratch, few
   std::vector<Linear> sums_;     // scratch
   Vec4 color_lo_{0.0F}, color_hi_{0.0F};
 };

@@ -5,17 +5,20 @@
 
 namespace sheaf::mesh {
 
-CollapseMesh::CollapseMesh(std::vector<Triangle> triangles, std::size_t point_count)
-    : triangles_(std::move(triangles)),
+CollapseMesh::CollapseMesh(std::span<const Triangle> triangles, std::size_t point_count)
+    : triangles_(triangles.size()),
       first_(point_count, kEnd),
-      next_(3 * triangles_.size(), kEnd),
-      live_triangles_(triangles_.size()),
+      corner_count_(point_count, 0),
+      live_triangles_(triangles.size()),
       marks_(point_count) {
   // Backwards, so that each list ascends.
-  for (std::size_t c = next_.size(); c-- > 0;) {
-    Corner& head = first_[triangles_[c / 3][c % 3]];
-    if (head == kEnd) ++live_points_;
-    next_[c] = std::exchange(head, static_cast<Corner>(c));
+  for (std::size_t f = triangles.size(); f-- > 0;) {
+    triangles_[f].points = triangles[f];
+    for (std::size_t k = 3; k-- > 0;) {
+      const std::uint32_t p = triangles[f][k];
+      if (corner_count_[p]++ == 0) ++live_points_;
+      triangles_[f].next[k] = std::exchange(first_[p], static_cast<Corner>(3 * f + k));
+    }
   }
 }
 
@@ -90,29 +93,30 @@ bool CollapseMesh::wouldRepeatTriangle(std::uint32_t a, std::uint32_t b) {
 }
 
 void CollapseMesh::collapse(std::uint32_t a, std::uint32_t b) {
+  Corner last = kEnd;
   forEachCorner(b, [&](Corner c) {
-    Triangle& t = triangles_[c / 3];
+    Triangle& t = triangles_[c / 3].points;
     if (nextPoint(c) == a || lastPoint(c) == a) {
       t[0] = kGone;
       --live_triangles_;
     } else {
       t[c % 3] = a;
+      last = c;
     }
   });
-  // Join the lists: b's live corners, then a's.
-  Corner last = kEnd;
-  forEachCorner(b, [&](Corner c) { last = c; });
+  // Join the lists: b's corners, then a's. What stands behind b's last live corner is gone.
   if (last != kEnd) {
-    next_[last] = first_[a];
+    triangles_[last / 3].next[last % 3] = first_[a];
     first_[a] = first_[b];
   }
+  corner_count_[a] += corner_count_[b];
   first_[b] = kEnd;
   --live_points_;
 }
 
 void CollapseMesh::remove(std::uint32_t triangle) {
-  const Triangle t = triangles_[triangle];
-  triangles_[triangle][0] = kGone;
+  const Triangle t = triangles_[triangle].points;
+  triangles_[triangle].points[0] = kGone;
   --live_triangles_;
   for (const std::uint32_t p : t) pruneIfUnused(p);
 }

@@ -15,14 +15,18 @@ class CollapseMesh {
   using Corner = std::uint32_t;
 
   /// triangles  of point indices in [0, point_count), no point twice in one
-  CollapseMesh(std::vector<Triangle> triangles, std::size_t point_count);
+  CollapseMesh(std::span<const Triangle> triangles, std::size_t point_count);
 
-  std::size_t pointCount() const { return first_.size(); }     ///< those that are gone included
   std::size_t livePointCount() const { return live_points_; }  ///< those in a triangle
   std::size_t liveTriangleCount() const { return live_triangles_; }
-  std::span<const Triangle> triangles() const { return triangles_; }  ///< those that are gone included
-  bool isLive(std::uint32_t triangle) const { return triangles_[triangle][0] != kGone; }
+  std::size_t triangleCount() const { return triangles_.size(); }  ///< those that are gone included
+  const Triangle& triangle(std::uint32_t f) const { return triangles_[f].points; }
+  bool isLive(std::uint32_t f) const { return triangles_[f].points[0] != kGone; }
   bool isPointLive(std::uint32_t point) const { return first_[point] != kEnd; }
+
+  static constexpr std::uint32_t after(std::uint32_t k) { return k == 2 ? 0 : k + 1; }
+  std::uint32_t nextPoint(Corner c) const { return triangles_[c / 3].points[after(c % 3)]; }
+  std::uint32_t lastPoint(Corner c) const { return triangles_[c / 3].points[after(after(c % 3))]; }
 
   /// Calls body(corner) for each corner at a point.
   template <typename Body>
@@ -30,24 +34,27 @@ class CollapseMesh {
     // Corners of triangles that are gone are dropped from the list in passing.
     for (Corner* link = &first_[point]; *link != kEnd;) {
       const Corner c = *link;
-      if (isLive(c / 3)) {
+      Links& t = triangles_[c / 3];
+      if (t.points[0] != kGone) {
         body(c);
-        link = &next_[c];
+        link = &t.next[c % 3];
       } else {
-        *link = next_[c];
+        *link = t.next[c % 3];
       }
     }
   }
 
-  static constexpr std::uint32_t after(std::uint32_t k) { return k == 2 ? 0 : k + 1; }
-  std::uint32_t nextPoint(Corner c) const { return triangles_[c / 3][after(c % 3)]; }
-  std::uint32_t lastPoint(Corner c) const { return triangles_[c / 3][after(after(c % 3))]; }
+  /// Calls body(triangle) for each triangle on the edge between two points.
+  template <typename Body>
+  void forEachTriangleOnEdge(std::uint32_t a, std::uint32_t b, const Body& body) {
+    const bool from_a = corner_count_[a] <= corner_count_[b];  // the centre of a fan may have very many
+    forEachCorner(from_a ? a : b, [&, end = from_a ? b : a](Corner c) {
+      if (nextPoint(c) == end || lastPoint(c) == end) body(c / 3);
+    });
+  }
 
   /// The points that share an edge with this one, each once. Valid until the next call of this or of mayCollapse().
   std::span<const std::uint32_t> neighbours(std::uint32_t point);
-  /// Of a neighbour in the last call of neighbours(): triangles on the edge to it.
-  std::uint32_t trianglesOnEdge(std::uint32_t neighbour) const { return marks_[neighbour].count[0]; }
-
   /// May b be merged into a? Not if that would change the topology: the link condition of Dey, Edelsbrunner, Guha and
   /// Nekhayev (1999), with borders and edges of three or more triangles kept as curves; nor if an edge would lose its
   /// last triangle or two triangles would have the same corners.
@@ -75,9 +82,15 @@ class CollapseMesh {
   bool wouldRepeatTriangle(std::uint32_t a, std::uint32_t b);
   void pruneIfUnused(std::uint32_t point);
 
-  std::vector<Triangle> triangles_;
-  std::vector<Corner> first_;  // per point: head of its list of corners
-  std::vector<Corner> next_;   // per corner
+  // Side by side, because they are needed together and the order of contractions jumps about in memory.
+  struct Links {
+    Triangle points;
+    std::array<Corner, 3> next;  // the next corner at the same point
+  };
+
+  std::vector<Links> triangles_;
+  std::vector<Corner> first_;                // per point: head of its list of corners
+  std::vector<std::uint32_t> corner_count_;  // per point, at least as many as are left
   std::size_t live_points_ = 0, live_triangles_ = 0;
   std::vector<Mark> marks_;
   std::uint32_t round_ = 0;

@@ -25,6 +25,12 @@ struct Quadric {
     c += q.c;
     return *this;
   }
+  Quadric& operator-=(const Quadric& q) {
+    xx -= q.xx, xy -= q.xy, xz -= q.xz, yy -= q.yy, yz -= q.yz, zz -= q.zz;
+    b -= q.b;
+    c -= q.c;
+    return *this;
+  }
   friend Quadric operator+(Quadric p, const Quadric& q) { return p += q; }
 
   DVec3 timesA(const DVec3& v) const {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
-#include <memory>
+#include <functional>
 #include <numeric>
 #include <optional>
 
@@ -20,6 +20,8 @@ namespace {
 constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 // Cosine of the largest angle by which one contraction may turn a triangle.
 constexpr double kLeastTurnCos = 0.2;
+// Triangles at a larger angle than 60 degrees form a sharp edge.
+constexpr double kSharpCos = 0.5;
 // When the queue is empty, edges refused earlier may have become possible. Another round is made as long as the last
 // one took away this share of the triangles.
 constexpr double kWorthwhileRound = 1e-3;
@@ -43,29 +45,31 @@ struct Frame {
 };
 
 // Triangles with the same corners in the same order but for rotation: all but the first.
-std::vector<std::uint32_t> findRepetitions(std::span<const Triangle> triangles) {
+std::vector<std::uint32_t> findRepetitions(std::span<const Triangle> triangles, std::size_t point_count) {
   const auto rotated = [&](std::uint32_t f) {
     Triangle t = triangles[f];
     std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     return t;
   };
-  // Buckets by least corner keep the sort short.
-  std::vector<std::uint32_t> order(triangles.size());
-  std::iota(order.begin(), order.end(), 0U);
-  const auto least = [&](std::uint32_t f) { return *std::min_element(triangles[f].begin(), triangles[f].end()); };
-  std::vector<std::uint32_t> key(triangles.size());
-  for (std::uint32_t f = 0; f < key.size(); ++f) key[f] = least(f);
-  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key[a] < key[b]; });
+  // Sorted by least corner by counting, the rest of the order only within those few.
+  std::vector<std::uint32_t> first(point_count + 1, 0), order(triangles.size());
+  const auto least = [&](const Triangle& t) { return std::min({t[0], t[1], t[2]}); };
+  for (const Triangle& t : triangles) ++first[least(t)];
+  std::exclusive_scan(first.begin(), first.end(), first.begin(), 0U);
+  for (std::uint32_t f = 0; f < triangles.size(); ++f) order[first[least(triangles[f])]++] = f;
   std::vector<std::uint32_t> repeated;
-  for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
-    while (end < order.size() && key[order[end]] == key[order[begin]]) ++end;
-    std::sort(order.begin() + static_cast<std::ptrdiff_t>(begin), order.begin() + static_cast<std::ptrdiff_t>(end),
+  std::size_t begin = 0;
+  for (std::size_t p = 0; p < point_count; ++p) {
+    const std::size_t end = first[p];  // filling moved each start to its end
+    const auto at = order.begin();
+    std::sort(at + static_cast<std::ptrdiff_t>(begin), at + static_cast<std::ptrdiff_t>(end),
               [&](std::uint32_t a, std::uint32_t b) {
                 const Triangle s = rotated(a), t = rotated(b);
                 return s != t ? s < t : a < b;
               });
     for (std::size_t i = begin + 1; i < end; ++i)
       if (rotated(order[i]) == rotated(order[i - 1])) repeated.push_back(order[i]);
+    begin = end;
   }
   return repeated;
 }
@@ -73,8 +77,6 @@ std::vector<std::uint32_t> findRepetitions(std::span<const Triangle> triangles) 
 struct Point {
   DVec3 at{0.0};
   Quadric quadric;
-  std::uint32_t version = 0;  // grows whenever the point moves: older candidates with it are void
-  bool moved = false;
 };
 
 // An edge and what contracting it costs. `a` < `b`.
@@ -83,10 +85,54 @@ struct Candidate {
   std::uint32_t b;
   std::uint32_t versions;  // sum of both points'
 
-  bool operator<(const Candidate& other) const {  // for std heaps: the least is on top
-    return cost_and_a != other.cost_and_a ? cost_and_a > other.cost_and_a : b > other.b;
+  bool operator<(const Candidate& other) const {
+    return cost_and_a != other.cost_and_a ? cost_and_a < other.cost_and_a : b < other.b;
   }
+  bool operator>(const Candidate& other) const { return other < *this; }
   std::uint32_t a() const { return static_cast<std::uint32_t>(cost_and_a); }
+};
+
+// Cheapest first. Only the cheap ones are kept in a heap, which so stays in the cache; the others wait unsorted until
+// their turn comes, and most are void by then.
+class CandidateQueue {
+ public:
+  void push(const Candidate& c) {
+    if (limit_ < c) {
+      later_.push_back(c);
+    } else {
+      heap_.push_back(c);
+      std::push_heap(heap_.begin(), heap_.end(), std::greater<>{});
+    }
+  }
+
+  // Takes the cheapest; is_void tells which candidates need not be kept. False if there is none.
+  template <typename IsVoid>
+  bool pop(Candidate& cheapest, const IsVoid& is_void) {
+    if (heap_.empty()) refill(is_void);
+    if (heap_.empty()) return false;
+    std::pop_heap(heap_.begin(), heap_.end(), std::greater<>{});
+    cheapest = heap_.back();
+    heap_.pop_back();
+    return true;
+  }
+
+ private:
+  template <typename IsVoid>
+  void refill(const IsVoid& is_void) {
+    std::erase_if(later_, is_void);
+    const auto share = static_cast<std::ptrdiff_t>(std::min(later_.size(), std::max(kLeastShare, later_.size() / 16)));
+    const auto middle = later_.end() - share;
+    std::nth_element(later_.begin(), middle, later_.end(), std::greater<>{});
+    heap_.assign(middle, later_.end());
+    later_.erase(middle, later_.end());
+    limit_ = heap_.empty() ? Candidate{0, 0, 0} : *std::max_element(heap_.begin(), heap_.end());
+    std::make_heap(heap_.begin(), heap_.end(), std::greater<>{});
+  }
+
+  static constexpr std::size_t kLeastShare = 4096;
+  std::vector<Candidate> heap_;   // none above limit_
+  std::vector<Candidate> later_;  // all above limit_
+  Candidate limit_{0, 0, 0};
 };
 
 class Simplifier {
@@ -98,8 +144,9 @@ class Simplifier {
         options_(options),
         frame_(Frame::around(boundsOf(positions))),
         topology_(positions.triangles, positions.vertexCount()),
-        points_(positions.vertexCount()) {
-    for (const std::uint32_t f : findRepetitions(source_.triangles)) topology_.remove(f);
+        points_(positions.vertexCount()),
+        version_(positions.vertexCount(), 0) {
+    for (const std::uint32_t f : findRepetitions(source_.triangles, points_.size())) topology_.remove(f);
     for (std::size_t p = 0; p < points_.size(); ++p) points_[p].at = frame_.toUnit(source_.positions[p]);
     if (options.attributes && (!wedges.normals.empty() || !wedges.texcoords.empty() || !wedges.colors.empty())) {
       std::vector<DVec3> at(points_.size());
@@ -108,7 +155,7 @@ class Simplifier {
                           AttributeWeights{options.normal_weight, options.texcoord_weight, options.color_weight});
     }
     addFaceQuadrics();
-    addBorderQuadrics();
+    addEdgeQuadrics();
   }
 
   std::size_t triangleCount() const { return topology_.liveTriangleCount(); }
@@ -118,7 +165,8 @@ class Simplifier {
     while (!targetReached()) {
       const std::size_t before = triangleCount();
       proposeAllEdges();
-      while (!queue_.empty() && !targetReached()) contractBest();
+      while (!targetReached() && contractBest()) {
+      }
       if (targetReached()) break;
       if (static_cast<double>(before - triangleCount()) <= kWorthwhileRound * static_cast<double>(before))
         return SimplifyStop::kTopology;
@@ -135,46 +183,70 @@ class Simplifier {
 
   DVec3 at(std::uint32_t p) const { return points_[p].at; }
 
+  // Twice the area long.
+  DVec3 normalOf(std::uint32_t f) const {
+    const Triangle& t = topology_.triangle(f);
+    return glm::cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]));
+  }
+
   // [GH97] §5. Deviation: weighted by area, because unweighted slivers outvote the large triangles beside them.
   void addFaceQuadrics() {
-    for (std::uint32_t f = 0; f < topology_.triangles().size(); ++f) {
+    for (std::uint32_t f = 0; f < topology_.triangleCount(); ++f) {
       if (!topology_.isLive(f)) continue;
-      const Triangle& t = topology_.triangles()[f];
-      const DVec3 cross = glm::cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]));
-      const double length = glm::length(cross);
+      const DVec3 normal = normalOf(f);
+      const double length = glm::length(normal);
       if (!(length > 0.0)) continue;
-      const DVec3 n = cross / length;
+      const DVec3 n = normal / length;
+      const Triangle& t = topology_.triangle(f);
       const Quadric q = Quadric::ofPlane(n, -glm::dot(n, at(t[0])), 0.5 * length);
       for (const std::uint32_t p : t) points_[p].quadric += q;
     }
   }
 
-  // [GH97] §6: planes through border edges, upright on their triangles. Here also at edges of three or more triangles
-  // and along seams, so that those curves stay where they are.
-  void addBorderQuadrics() {
-    std::vector<std::uint32_t> ends;
+  void addEdgeQuadrics() {
+    struct Side {
+      std::uint32_t end, triangle;
+      auto operator<=>(const Side&) const = default;
+    };
+    std::vector<Side> sides;
     for (std::uint32_t p = 0; p < points_.size(); ++p) {
-      ends.clear();
-      for (const std::uint32_t n : topology_.neighbours(p))
-        if (n > p && (topology_.trianglesOnEdge(n) != 2 || (attributes_ && attributes_->isSeam(topology_, p, n))))
-          ends.push_back(n);
-      for (const std::uint32_t n : ends)
-        topology_.forEachCorner(p, [&](CollapseMesh::Corner c) {
-          if (topology_.nextPoint(c) == n || topology_.lastPoint(c) == n) holdEdge(p, n, c / 3);
-        });
+      sides.clear();
+      topology_.forEachCorner(p, [&](CollapseMesh::Corner c) {
+        for (const std::uint32_t n : {topology_.nextPoint(c), topology_.lastPoint(c)})
+          if (n > p) sides.push_back({n, c / 3});
+      });
+      std::sort(sides.begin(), sides.end());
+      for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
+        while (end < sides.size() && sides[end].end == sides[i].end) ++end;
+        const double weight = end - i == 2 ? edgeWeight(p, sides[i].end, sides[i].triangle, sides[i + 1].triangle)
+                                           : options_.border_weight;
+        if (weight > 0.0)
+          for (std::size_t k = i; k < end; ++k) holdEdge(p, sides[k].end, sides[k].triangle, weight);
+      }
     }
   }
 
-  void holdEdge(std::uint32_t p, std::uint32_t n, std::uint32_t triangle) {
-    const Triangle& t = topology_.triangles()[triangle];
-    const DVec3 edge = at(n) - at(p);
-    const DVec3 upright = glm::cross(edge, glm::cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0])));
+  // Of the planes at an edge of two triangles. At a sharp edge the planes of the triangles alone are no hold along the
+  // bisector of the angle: the rim of a thin sheet would shrink for nearly nothing. Not in [GH97].
+  double edgeWeight(std::uint32_t p, std::uint32_t q, std::uint32_t f, std::uint32_t g) {
+    if (attributes_ && attributes_->isSeam(topology_, p, q)) return options_.border_weight;
+    const DVec3 m = normalOf(f), n = normalOf(g);
+    const double scale = std::sqrt(glm::dot(m, m) * glm::dot(n, n));
+    if (!(scale > 0.0)) return 0.0;
+    return std::max(0.0, (kSharpCos - glm::dot(m, n) / scale) / (1.0 + kSharpCos));
+  }
+
+  // [GH97] §6: a plane through the edge, upright on the triangle. Meant for borders; here also for edges of three or
+  // more triangles, seams and, lightly, sharp edges, so that those curves stay where they are.
+  void holdEdge(std::uint32_t p, std::uint32_t q, std::uint32_t triangle, double weight) {
+    const DVec3 edge = at(q) - at(p);
+    const DVec3 upright = glm::cross(edge, normalOf(triangle));
     const double length = glm::length(upright);
     if (!(length > 0.0)) return;
     const DVec3 m = upright / length;
-    const Quadric q = Quadric::ofPlane(m, -glm::dot(m, at(p)), options_.border_weight * glm::dot(edge, edge));
-    points_[p].quadric += q;
-    points_[n].quadric += q;
+    const Quadric plane = Quadric::ofPlane(m, -glm::dot(m, at(p)), weight * glm::dot(edge, edge));
+    points_[p].quadric += plane;
+    points_[q].quadric += plane;
   }
 
   Placement placementOf(std::uint32_t a, std::uint32_t b) {
@@ -186,37 +258,36 @@ class Simplifier {
   Candidate candidateOf(std::uint32_t p, std::uint32_t q) {
     const std::uint32_t a = std::min(p, q), b = std::max(p, q);
     const auto cost = static_cast<float>(placementOf(a, b).cost);
-    return {std::uint64_t{std::bit_cast<std::uint32_t>(cost)} << 32 | a, b, points_[a].version + points_[b].version};
+    return {std::uint64_t{std::bit_cast<std::uint32_t>(cost)} << 32 | a, b, version_[a] + version_[b]};
   }
 
   void proposeAllEdges() {
-    queue_.clear();
     for (std::uint32_t p = 0; p < points_.size(); ++p)
       for (const std::uint32_t n : topology_.neighbours(p))
-        if (n > p) queue_.push_back(candidateOf(p, n));
-    std::make_heap(queue_.begin(), queue_.end());
+        if (n > p) queue_.push(candidateOf(p, n));
   }
 
-  void contractBest() {
-    std::pop_heap(queue_.begin(), queue_.end());
-    const Candidate best = queue_.back();
-    queue_.pop_back();
-    const std::uint32_t a = best.a(), b = best.b;
-    // Versions only grow: an equal sum means that neither point has changed.
-    if (!topology_.isPointLive(a) || !topology_.isPointLive(b)) return;
-    if (points_[a].version + points_[b].version != best.versions) return;
+  // False if the queue is empty.
+  bool contractBest() {
+    // Versions only grow: an equal sum means that both points are as they were.
+    const auto is_void = [&](const Candidate& c) { return version_[c.a()] + version_[c.b] != c.versions; };
+    Candidate best;
+    if (!queue_.pop(best, is_void)) return false;
+    if (!is_void(best)) contract(best.a(), best.b);
+    return true;
+  }
+
+  void contract(std::uint32_t a, std::uint32_t b) {
+    if (!topology_.mayCollapse(a, b)) return;
     const DVec3 place = placementOf(a, b).at;
-    if (!topology_.mayCollapse(a, b) || turnsTriangle(a, b, place) || turnsTriangle(b, a, place)) return;
+    if (turnsTriangle(a, b, place) || turnsTriangle(b, a, place)) return;
     if (attributes_) attributes_->collapse(topology_, a, b);
     topology_.collapse(a, b);
     points_[a].at = place;
     points_[a].quadric += points_[b].quadric;
-    points_[a].version += points_[b].version + 1;
-    points_[a].moved = true;
-    for (const std::uint32_t n : topology_.neighbours(a)) {
-      queue_.push_back(candidateOf(a, n));
-      std::push_heap(queue_.begin(), queue_.end());
-    }
+    version_[a] += version_[b] + 1;
+    ++version_[b];
+    for (const std::uint32_t n : topology_.neighbours(a)) queue_.push(candidateOf(a, n));
   }
 
   // Would moving p to `place` fold over a triangle that does not vanish with the edge to q?
@@ -235,7 +306,7 @@ class Simplifier {
   }
 
   Vec3 positionOf(std::uint32_t p) const {
-    return points_[p].moved ? frame_.fromUnit(points_[p].at) : source_.positions[p];
+    return version_[p] != 0 ? frame_.fromUnit(points_[p].at) : source_.positions[p];
   }
 
   Mesh positionsOnly() const {
@@ -247,9 +318,9 @@ class Simplifier {
       out.positions.push_back(positionOf(p));
     }
     out.triangles.reserve(triangleCount());
-    for (std::uint32_t f = 0; f < topology_.triangles().size(); ++f) {
+    for (std::uint32_t f = 0; f < topology_.triangleCount(); ++f) {
       if (!topology_.isLive(f)) continue;
-      const Triangle& t = topology_.triangles()[f];
+      const Triangle& t = topology_.triangle(f);
       out.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
     }
     return out;
@@ -257,9 +328,9 @@ class Simplifier {
 
   Mesh withAttributes() const {
     std::vector<std::uint32_t> point_of(wedges_.vertexCount(), kNone), number(wedges_.vertexCount(), kNone);
-    for (std::uint32_t f = 0; f < topology_.triangles().size(); ++f)
+    for (std::uint32_t f = 0; f < topology_.triangleCount(); ++f)
       for (std::size_t k = 0; topology_.isLive(f) && k < 3; ++k)
-        point_of[attributes_->wedgesOf(f)[k]] = topology_.triangles()[f][k];
+        point_of[attributes_->wedgesOf(f)[k]] = topology_.triangle(f)[k];
     Mesh out;
     for (std::uint32_t w = 0; w < point_of.size(); ++w)
       if (point_of[w] != kNone) {
@@ -272,7 +343,7 @@ class Simplifier {
     for (std::uint32_t w = 0; w < point_of.size(); ++w)
       if (number[w] != kNone) storeAttributes(w, point_of[w], out, number[w]);
     out.triangles.reserve(triangleCount());
-    for (std::uint32_t f = 0; f < topology_.triangles().size(); ++f) {
+    for (std::uint32_t f = 0; f < topology_.triangleCount(); ++f) {
       if (!topology_.isLive(f)) continue;
       const Triangle& t = attributes_->wedgesOf(f);
       out.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
@@ -281,7 +352,7 @@ class Simplifier {
   }
 
   void storeAttributes(std::uint32_t wedge, std::uint32_t point, Mesh& out, std::size_t vertex) const {
-    if (points_[point].moved) return attributes_->store(wedge, points_[point].at, out, vertex);
+    if (version_[point] != 0) return attributes_->store(wedge, points_[point].at, out, vertex);
     if (!out.normals.empty()) out.normals[vertex] = wedges_.normals[wedge];
     if (!out.texcoords.empty()) out.texcoords[vertex] = wedges_.texcoords[wedge];
     if (!out.colors.empty()) out.colors[vertex] = wedges_.colors[wedge];
@@ -293,8 +364,9 @@ class Simplifier {
   Frame frame_;
   CollapseMesh topology_;
   std::vector<Point> points_;
+  std::vector<std::uint32_t> version_;  // per point, grows when it moves or goes: older candidates with it are void
   std::optional<AttributeQuadrics> attributes_;
-  std::vector<Candidate> queue_;
+  CandidateQueue queue_;
 };
 
 std::size_t dropCollapsed(Mesh& mesh, Mesh& positions) {

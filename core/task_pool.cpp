@@ -9,23 +9,26 @@
 
 namespace sheaf {
 
+namespace {
+
+// oneTBB starts no more threads than there are cores unless it is told that it may, and of several such limits the
+// lowest holds: so there is one for the process, above any pool's size.
+void allowMoreThreadsThanCores() {
+  static const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1024);
+}
+
+}  // namespace
+
 struct TaskPool::Arena {
-  explicit Arena(int threads)
-      : limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)), arena(threads) {}
-  // oneTBB starts no more threads than there are cores unless it is told to.
-  tbb::global_control limit;
-      : more_than_cores(tbb::global_control::max_allowed_parallelism,
-                        std::max(static_cast<std::size_t>(threads),
-                                 tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism))),
-        arena(threads) {}
-  // Else oneTBB says on stderr that it ignores what exceeds the number of cores.
-  tbb::global_control more_than_cores;
+  explicit Arena(int threads) : arena(threads) {}
   tbb::task_arena arena;
 };
 
 TaskPool::TaskPool(int threads)
     : thread_count_(threads > 0 ? threads : std::max(1, tbb::this_task_arena::max_concurrency())),
-      arena_(std::make_unique<Arena>(thread_count_)) {}
+      arena_(std::make_unique<Arena>(thread_count_)) {
+  allowMoreThreadsThanCores();
+}
 
 TaskPool::~TaskPool() = default;
 

@@ -12,8 +12,8 @@ namespace {
 using mesh::Mesh;
 using mesh::Triangle;
 
-// How much a spread of normals counts against a spread of places. Just below 1 the sheets of a thin part separate as soon as a
-// piece holds little else, while the whole of a rounded body is still split by place.
+// How much a spread of normals counts against a spread of places. Just below 1 the sheets of a thin part separate as
+// soon as a piece holds little else, while the whole of a rounded body is still split by place.
 constexpr double kNormalWeight = 0.95;
 // A patch of T triangles has about r T + 1.4 sqrt(T) vertices, where r is the whole mesh's ratio: the second term is
 // half the border of a roundish patch. Aiming at this share of the limit leaves few patches that must be halved again.

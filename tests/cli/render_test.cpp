@@ -129,7 +129,9 @@ TEST_CASE("cli/render: --up z turns a file whose z axis is up") {
     REQUIRE(result.code == 0);
     return raster::readImage(folder.file(output));
   };
-  CHECK(draw("z.off", "z.png", {"--up", "z"}) == draw("y.off", "y.png", {}));
+  const raster::ImageDifference difference =
+      raster::compareImages(draw("z.off", "z.png", {"--up", "z"}), draw("y.off", "y.png", {}));
+  CHECK(difference.max_error <= 1);  // normals are rounded in the file's own axes
   CHECK(!(draw("z.off", "flat.png", {}) == draw("y.off", "y.png", {"--up", "y"})));
 }
 

@@ -1,8 +1,8 @@
 // PLY: ascii and binary of both byte orders [Turk94]; elements vertex, face and tristrips; others are skipped.
 //
-// A reader of our own: a binary file of a million triangles takes assimp 5.2.5 a peak of 65 MB (48 bytes per face) before
-// its result is copied into a Mesh of 24 MB; here the peak is 47 MB in all, normals included. Assimp also has open
-// memory-safety reports, so that a checking pass as long as a reader would have to come before it.
+// A reader of our own: a binary file of a million triangles takes assimp 5.2.5 a peak of 65 MB (48 bytes per face)
+// before its result is copied into a Mesh of 24 MB; here the peak is 47 MB in all, normals included. Assimp also has
+// open memory-safety reports, so that a checking pass as long as a reader would have to come before it.
 #include <fmt/format.h>
 
 #include <algorithm>

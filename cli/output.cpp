@@ -32,8 +32,9 @@ bool sameFile(const std::string& a, const std::string& b) {
   std::error_code ec;
   if (fs::exists(a, ec) && !fs::is_regular_file(a, ec)) return false;  // /dev/null may be named twice
   if (fs::equivalent(a, b, ec)) return true;
-  const fs::path whole_a = fs::weakly_canonical(a, ec);
-  return !ec && whole_a == fs::weakly_canonical(b, ec);
+  // A relative path that does not exist yet would stay relative.
+  const fs::path whole_a = fs::weakly_canonical(fs::absolute(a, ec), ec);
+  return !ec && whole_a == fs::weakly_canonical(fs::absolute(b, ec), ec);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "core/task_pool.h"
 
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -8,6 +9,16 @@
 
 namespace sheaf {
 
+namespace {
+
+// oneTBB starts no more threads than there are cores unless it is told that it may, and of several such limits the
+// lowest holds: so there is one for the process, above any pool's size.
+void allowMoreThreadsThanCores() {
+  static const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1024);
+}
+
+}  // namespace
+
 struct TaskPool::Arena {
   explicit Arena(int threads) : arena(threads) {}
   tbb::task_arena arena;
@@ -15,7 +26,9 @@ struct TaskPool::Arena {
 
 TaskPool::TaskPool(int threads)
     : thread_count_(threads > 0 ? threads : std::max(1, tbb::this_task_arena::max_concurrency())),
-      arena_(std::make_unique<Arena>(thread_count_)) {}
+      arena_(std::make_unique<Arena>(thread_count_)) {
+  allowMoreThreadsThanCores();
+}
 
 TaskPool::~TaskPool() = default;
 

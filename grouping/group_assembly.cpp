@@ -47,18 +47,6 @@ VertexGroup groupOf(const Findings::Seed& seed, std::span<const Vec3> positions,
   return g;
 }
 
-void listMembers(std::span<const std::uint32_t> owner, VertexGroups& out) {
-  std::vector<std::uint32_t> next(out.groups.size());
-  std::uint32_t total = 0;
-  for (std::size_t g = 0; g < out.groups.size(); ++g) {
-    out.groups[g].first_member = next[g] = total;
-    total += out.groups[g].member_count;
-  }
-  out.members.resize(total);
-  for (std::uint32_t v = 0; v < owner.size(); ++v)
-    if (owner[v] != kNoIndex) out.members[next[owner[v]]++] = v;
-}
-
 void extendRanges(VertexGroup& g, float s, float t) {
   g.s_min = std::min(g.s_min, s), g.s_max = std::max(g.s_max, s);
   g.t_min = std::min(g.t_min, t), g.t_max = std::max(g.t_max, t);
@@ -79,15 +67,19 @@ std::vector<std::uint32_t> verticesInUse(std::span<const Vec3> positions, std::s
     for (const std::uint32_t v : t) used[v] = true;
   std::vector<std::uint32_t> vertices;
   vertices.reserve(positions.size());
-  for (std::uint32_t v = 0; v < positions.size(); ++v) {
-    if (!used[v]) continue;
+  for (std::uint32_t v = 0; v < positions.size(); ++v)
+    if (used[v]) vertices.push_back(v);
+  checkPositions(positions, vertices);
+  return vertices;
+}
+
+void checkPositions(std::span<const Vec3> positions, std::span<const std::uint32_t> vertices) {
+  for (const std::uint32_t v : vertices) {
     const Vec3 size = glm::abs(positions[v]);
     if (!(size.x <= kMaxCoordinate && size.y <= kMaxCoordinate && size.z <= kMaxCoordinate))
       throw Error(ErrorCode::kBadInput, fmt::format("vertex {}: position ({}, {}, {}) is not finite or beyond {}", v,
                                                     positions[v].x, positions[v].y, positions[v].z, kMaxCoordinate));
-    vertices.push_back(v);
   }
-  return vertices;
 }
 
 double extentOf(std::span<const Vec3> positions, std::span<const std::uint32_t> vertices) {
@@ -140,7 +132,7 @@ void assembleGroups(std::span<const Vec3> positions, std::span<const std::uint32
     out.groups[g].member_count = count[g];
   }
   out.owner = std::move(findings.owner);
-  listMembers(out.owner, out);
+  listMembers(out);
 
   out.positions.assign(positions.begin(), positions.end());
   out.state.assign(positions.size(), VertexState::kUnused);
@@ -160,6 +152,18 @@ void assembleGroups(std::span<const Vec3> positions, std::span<const std::uint32
       out.positions[v] = pointOn(g, s, t);
     }
   }
+}
+
+void listMembers(VertexGroups& groups) {
+  std::vector<std::uint32_t> next(groups.groups.size());
+  std::uint32_t total = 0;
+  for (std::size_t g = 0; g < groups.groups.size(); ++g) {
+    groups.groups[g].first_member = next[g] = total;
+    total += groups.groups[g].member_count;
+  }
+  groups.members.resize(total);
+  for (std::uint32_t v = 0; v < groups.owner.size(); ++v)
+    if (groups.owner[v] != kNoIndex) groups.members[next[groups.owner[v]]++] = v;
 }
 
 void dropUngrouped(VertexGroups& groups) {

@@ -18,6 +18,9 @@ inline constexpr float kMaxCoordinate = 1e30F;
 /// Throws Error(kBadInput) if one of them is not finite or beyond kMaxCoordinate.
 std::vector<std::uint32_t> verticesInUse(std::span<const Vec3> positions, std::span<const mesh::Triangle> triangles);
 
+/// Throws Error(kBadInput) if one of these vertices is not finite or beyond kMaxCoordinate.
+void checkPositions(std::span<const Vec3> positions, std::span<const std::uint32_t> vertices);
+
 /// Longest edge of the box around these vertices; 0 for none.
 double extentOf(std::span<const Vec3> positions, std::span<const std::uint32_t> vertices);
 
@@ -60,6 +63,9 @@ class Placement {
 /// in_use  as from verticesInUse()
 void assembleGroups(std::span<const Vec3> positions, std::span<const std::uint32_t> in_use, Findings findings,
                     const Placement& placement, VertexGroups& out);
+
+/// Fills members and first_member from owners and member counts.
+void listMembers(VertexGroups& groups);
 
 /// Drops members whose owner is kNoIndex, then groups without members; renews ranges and the states free and defining.
 void dropUngrouped(VertexGroups& groups);

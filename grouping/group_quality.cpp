@@ -108,9 +108,11 @@ void restoreFlippedFaces(std::span<const Vec3> original, std::span<const mesh::T
 }
 
 void finishGroups(const mesh::Mesh& mesh, bool restore_flipped, std::int64_t start_ns, VertexGroups& groups) {
-  const bool safe = groups.metric == Metric::kQuadric && groups.limit == Limit::kSafe;
-  if (restore_flipped || safe) restoreFlippedFaces(mesh.positions, mesh.triangles, groups);
   groups.stats.search_ms = 1e-6 * static_cast<double>(nowNs() - start_ns);
+  measure(mesh.positions, mesh.triangles, groups);
+  const bool safe = groups.metric == Metric::kQuadric && groups.limit == Limit::kSafe;
+  if (!(restore_flipped || safe) || groups.stats.flipped_faces + groups.stats.collapsed_faces == 0) return;
+  restoreFlippedFaces(mesh.positions, mesh.triangles, groups);
   measure(mesh.positions, mesh.triangles, groups);
 }
 

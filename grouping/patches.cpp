@@ -12,12 +12,12 @@ namespace {
 using mesh::Mesh;
 using mesh::Triangle;
 
-// How much a spread of normals counts against a spread of places. At 1 the sheets of a thin part separate as soon as a
-// piece holds little else, while the whole of a rounded body is still split by place.
-constexpr double kNormalWeight = 1.0;
+// How much a spread of normals counts against a spread of places. Just below 1 the sheets of a thin part separate as
+// soon as a piece holds little else, while the whole of a rounded body is still split by place.
+constexpr double kNormalWeight = 0.95;
 // A patch of T triangles has about r T + 1.4 sqrt(T) vertices, where r is the whole mesh's ratio: the second term is
 // half the border of a roundish patch. Aiming at this share of the limit leaves few patches that must be halved again.
-constexpr double kVertexFill = 0.9;
+constexpr double kVertexFill = 0.89;
 constexpr std::size_t kSpreadSamples = 256, kRankSamples = 1024;
 constexpr int kTrianglesPerPiece = 1 << 16;
 

@@ -138,7 +138,7 @@ VertexGroups groupPlanar(const mesh::Mesh& mesh, const PlanarOptions& options) {
   out.kind = GroupKind::kPlane;
   out.planes = options.planes;
   out.epsilon = options.epsilon;
-  out.extent = extentOf(mesh.positions, in_use);
+  out.extent = options.extent > 0.0 ? options.extent : extentOf(mesh.positions, in_use);
   chooseMetric(mesh, options.metric, options.limit, out);
   const double eps = out.epsilon * out.extent;
   const bool quadric = out.metric == Metric::kQuadric;

@@ -33,6 +33,7 @@ struct PlanarOptions {
   /// Sets vertices free again until no face is flipped or collapsed. The quadric metric with the safe limit always
   /// does, against round-off.
   bool restore_flipped = false;
+  double extent = 0.0;  ///< what epsilon is a fraction of, if not the longest edge of the box; 0: that edge
 };
 
 /// Groups the vertices that faces use; without faces all of them, by distance whatever the metric asked for.

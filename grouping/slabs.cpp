@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 namespace sheaf::grouping {
 namespace {
@@ -78,21 +79,58 @@ std::uint32_t gallop(std::uint32_t n, std::uint32_t hint, const Predicate& holds
   return lo;
 }
 
+// Where in sorted numbers to start looking for one: as many equal bins as numbers. Right to a few places unless the
+// numbers are bunched together.
+class Bins {
+ public:
+  explicit Bins(std::span<const float> x) : first_(x.size() + 1) {
+    if (x.empty()) return;
+    least_ = x.front();
+    const double range = double(x.back()) - double(x.front());
+    per_unit_ = range > 0.0 ? double(x.size()) / range : 0.0;
+    for (const float f : x) ++first_[std::min(x.size() - 1, binOf(f)) + 1];
+    for (std::size_t b = 1; b < first_.size(); ++b) first_[b] += first_[b - 1];
+  }
+  std::uint32_t placeOf(float x) const { return first_[binOf(x)]; }
+
+ private:
+  std::size_t binOf(float x) const {
+    const double bin = (double(x) - least_) * per_unit_;
+    return static_cast<std::size_t>(std::clamp(bin, 0.0, double(first_.size() - 1)));
+  }
+
+  std::vector<std::uint32_t> first_;
+  double least_ = 0.0, per_unit_ = 0.0;
+};
+
 // body(i, begin, end) for the slab of each i-th vertex of the order: the vertices in [begin, end) lie in it, among them
 // its own.
 template <class Body>
 void forEachSlab(const SlabOrder& order, float common_half, const Body& body) {
   const std::uint32_t n = static_cast<std::uint32_t>(order.x.size());
   const bool alike = order.half.empty();
+  const Bins bins(alike ? std::span<const float>() : order.x);
   const float* x = order.x.data();
   std::uint32_t begin = 0, end = 0;
   for (std::uint32_t i = 0; i < n; ++i) {
     const float p = x[i], half = alike ? common_half : order.half[i];
-    // Slabs of one width move on with their vertices, so the last range is a near guess; others are narrow.
-    begin = gallop(n, alike ? begin : i, [&](std::uint32_t j) { return x[j] >= p || p - x[j] <= half; });
-    end = gallop(n, alike ? end : i, [&](std::uint32_t j) { return x[j] > p && x[j] - p > half; });
+    // Slabs of one width move on with their vertices, so that the last range is a near guess.
+    if (!alike) begin = bins.placeOf(p - half), end = bins.placeOf(p + half);
+    begin = gallop(n, begin, [&](std::uint32_t j) { return x[j] >= p || p - x[j] <= half; });
+    end = gallop(n, end, [&](std::uint32_t j) { return x[j] > p && x[j] - p > half; });
     body(i, begin, end);
   }
+}
+
+// For each vertex of the order, how many slabs it lies in.
+std::vector<std::uint32_t> countCovering(const SlabOrder& order, float common_half) {
+  std::vector<std::uint32_t> count(order.x.size() + 1, 0);  // first the changes of the count, from place to place
+  forEachSlab(order, common_half, [&](std::uint32_t, std::uint32_t begin, std::uint32_t end) {
+    ++count[begin];
+    --count[end];
+  });
+  for (std::size_t i = 1; i < count.size(); ++i) count[i] += count[i - 1];
+  return count;
 }
 
 // For the vertices of an order: their projections on the axes before this one.
@@ -102,6 +140,31 @@ std::vector<std::vector<float>> earlierProjections(const Slabs& slabs, std::uint
   for (std::uint32_t a = 0; a < axis; ++a)
     for (std::uint32_t i = 0; i < slabs.vertex_count; ++i) earlier[a][i] = slabs.xOf(order.vertex[i], a);
   return earlier;
+}
+
+// For each vertex of the order of `axis` > 0, how many slabs it lies in that it does not lie in along an earlier axis.
+// Plain runs over floats, which compilers turn into vector code.
+std::vector<std::uint32_t> countNewlyCovering(const Slabs& slabs, std::uint32_t axis) {
+  const SlabOrder& order = slabs.axes[axis];
+  const std::vector<std::vector<float>> earlier = earlierProjections(slabs, axis);
+  std::vector<std::uint32_t> counts(slabs.vertex_count, 0), known_before(slabs.vertex_count, 0);
+  std::uint32_t* const count = counts.data();
+  std::uint32_t* const known = known_before.data();
+  forEachSlab(order, slabs.common_half, [&](std::uint32_t i, std::uint32_t begin, std::uint32_t end) {
+    const std::uint32_t v = order.vertex[i];
+    for (std::uint32_t a = 0; a < axis; ++a) {
+      const float x = slabs.xOf(v, a), half = slabs.halfOf(v, a);
+      const float* other = earlier[a].data();
+      const std::uint32_t keep = a == 0 ? 0U : ~0U;  // the first overwrites what the last slab has left
+      if (a + 1 < axis)
+        for (std::uint32_t j = begin; j < end; ++j)
+          known[j] = (known[j] & keep) | (std::abs(x - other[j]) <= half ? 1U : 0U);
+      else
+        for (std::uint32_t j = begin; j < end; ++j)
+          count[j] += 1U - ((known[j] & keep) | (std::abs(x - other[j]) <= half ? 1U : 0U));
+    }
+  });
+  return counts;
 }
 
 }  // namespace
@@ -127,40 +190,19 @@ Slabs makeSlabs(std::span<const Vec3> positions, std::span<const std::uint32_t> 
 
 std::vector<std::uint32_t> sumKeys(const Slabs& slabs) {
   std::vector<std::uint32_t> keys(slabs.vertex_count, 0);
-  std::vector<std::uint32_t> change(slabs.vertex_count + 1);
   for (const SlabOrder& order : slabs.axes) {
-    std::fill(change.begin(), change.end(), 0U);
-    forEachSlab(order, slabs.common_half, [&](std::uint32_t, std::uint32_t begin, std::uint32_t end) {
-      ++change[begin];
-      --change[end];
-    });
-    std::uint32_t covering = 0;
-    for (std::uint32_t i = 0; i < slabs.vertex_count; ++i) {
-      covering += change[i];
-      keys[order.vertex[i]] += covering - 1;  // not its own
-    }
+    const std::vector<std::uint32_t> count = countCovering(order, slabs.common_half);
+    for (std::uint32_t i = 0; i < slabs.vertex_count; ++i) keys[order.vertex[i]] += count[i] - 1;  // not its own
   }
   return keys;
 }
 
 std::vector<std::uint32_t> unionKeys(const Slabs& slabs) {
   std::vector<std::uint32_t> keys(slabs.vertex_count, 0);
-  std::vector<std::uint32_t> count(slabs.vertex_count), known(slabs.vertex_count);
   for (std::uint32_t axis = 0; axis < slabs.axis_count; ++axis) {
     const SlabOrder& order = slabs.axes[axis];
-    const std::vector<std::vector<float>> earlier = earlierProjections(slabs, axis);
-    std::fill(count.begin(), count.end(), 0U);
-    forEachSlab(order, slabs.common_half, [&](std::uint32_t i, std::uint32_t begin, std::uint32_t end) {
-      const std::uint32_t v = order.vertex[i];
-      std::fill(known.begin() + begin, known.begin() + end, 0U);
-      for (std::uint32_t a = 0; a < axis; ++a) {
-        const float x = slabs.xOf(v, a), half = slabs.halfOf(v, a);
-        const float* other = earlier[a].data();
-        std::uint32_t* mark = known.data();
-        for (std::uint32_t j = begin; j < end; ++j) mark[j] |= std::abs(x - other[j]) <= half ? 1U : 0U;
-      }
-      for (std::uint32_t j = begin; j < end; ++j) count[j] += 1U - known[j];
-    });
+    const std::vector<std::uint32_t> count =
+        axis == 0 ? countCovering(order, slabs.common_half) : countNewlyCovering(slabs, axis);
     for (std::uint32_t i = 0; i < slabs.vertex_count; ++i) keys[order.vertex[i]] += count[i];
   }
   for (std::uint32_t& key : keys) --key;  // each vertex lies in its own slab

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
 namespace sheaf::grouping {
@@ -78,16 +79,22 @@ std::string checkStates(const VertexGroups& groups) {
   for (const VertexGroup& g : groups.groups)
     for (const std::uint32_t v : {g.origin, g.end})
       if (v != kNoIndex) defines[v] = true;
-  std::size_t grouped = 0, owned = 0;
+  std::array<std::size_t, 4> count{};
+  std::size_t owned = 0;
   for (std::size_t v = 0; v < groups.state.size(); ++v) {
     if (groups.state[v] > VertexState::kGrouped) return fmt::format("vertex {}: has no known state", v);
     if ((groups.state[v] == VertexState::kDefining) != defines[v])
       return fmt::format("vertex {}: is marked as defining but defines no group", v);
-    grouped += groups.state[v] == VertexState::kGrouped;
+    ++count[static_cast<std::size_t>(groups.state[v])];
     owned += groups.owner[v] != kNoIndex;
   }
+  const auto [unused, free, defining, grouped] = count;
   if (grouped != groups.members.size() || owned != grouped)
     return fmt::format("{} members, {} vertices grouped, {} owned", groups.members.size(), grouped, owned);
+  const GroupingStats& stats = groups.stats;
+  if (stats.free != free || stats.defining != defining || stats.grouped != grouped ||
+      stats.vertices != free + defining + grouped)
+    return "figures that are not those of its vertices";
   return {};
 }
 

@@ -30,7 +30,9 @@ struct BlockFragments {
   alignas(64) std::int32_t vertex[3][kBlockPixels];
   alignas(64) std::uint32_t flip[kBlockPixels];  ///< sign bit set: the normal is turned round
   alignas(64) float normal[3][kBlockPixels];     ///< object space, any length
-  // For textures only: how the planes of ShadeTriangle rise along x and y, divided by their sum here.
+  // For surfaces with a pattern only: linear colour before light.
+  alignas(64) float albedo[3][kBlockPixels];
+  // For the same only: how the planes of ShadeTriangle rise along x and y, divided by their sum here.
   alignas(64) float along_x[3][kBlockPixels];
   alignas(64) float along_y[3][kBlockPixels];
   // Of each vector, at its first pixel: the lanes to shade now, and the one triangle that all show, or kNoTriangle.
@@ -111,7 +113,7 @@ HWY_INLINE void LoadQuarter(const ShadeTriangle* triangles, int quarter, const s
 }
 
 /// Evaluates the triangles at one vector of pixels; returns the lanes that are of the surface.
-template <bool kUniform, bool kTextured>
+template <bool kUniform, bool kPatterned>
 HWY_INLINE MF FetchVector(const ShadeTriangle* triangles, const std::uint32_t* ids, std::uint32_t surface_id, VI x,
                           VI y, std::size_t begin, BlockFragments& out) {
   const DF d;
@@ -144,7 +146,7 @@ HWY_INLINE MF FetchVector(const ShadeTriangle* triangles, const std::uint32_t* i
   hn::Store(hn::BitCast(di, vertex1), di, out.vertex[1] + begin);
   hn::Store(hn::BitCast(di, vertex2), di, out.vertex[2] + begin);
   hn::Store(hn::ShiftLeft<31>(back_face), du, out.flip + begin);
-  if constexpr (kTextured) {
+  if constexpr (kPatterned) {
     hn::Store(hn::Mul(hn::BitCast(d, ux0), inverse_sum), d, out.along_x[0] + begin);
     hn::Store(hn::Mul(hn::BitCast(d, ux1), inverse_sum), d, out.along_x[1] + begin);
     hn::Store(hn::Mul(hn::BitCast(d, ux2), inverse_sum), d, out.along_x[2] + begin);
@@ -168,7 +170,7 @@ HWY_INLINE void HideOtherVertices(std::uint64_t mine, std::size_t begin, BlockFr
 
 /// Evaluates the triangles at those pending pixels that show the surface, and returns these pixels. (x0, y0) is the
 /// block's top left pixel, ids are its kBlockPixels triangles.
-template <bool kTextured>
+template <bool kPatterned>
 HWY_INLINE std::uint64_t FetchFragments(const ShadeTriangle* triangles, const std::uint32_t* ids,
                                         std::uint32_t surface_id, std::uint64_t pending, std::int32_t x0,
                                         std::int32_t y0, BlockFragments& out) {
@@ -193,8 +195,8 @@ HWY_INLINE std::uint64_t FetchFragments(const ShadeTriangle* triangles, const st
     out.uniform[begin] = uniform ? first_id : kNoTriangle;
     const VI x = hn::Add(lane_x, hn::Set(di, static_cast<std::int32_t>(begin) & kRowMask));
     const VI y = hn::Add(lane_y, hn::Set(di, static_cast<std::int32_t>(begin) / kBlockSize));
-    const MF of_surface = uniform ? FetchVector<true, kTextured>(triangles, lane_ids, surface_id, x, y, begin, out)
-                                  : FetchVector<false, kTextured>(triangles, lane_ids, surface_id, x, y, begin, out);
+    const MF of_surface = uniform ? FetchVector<true, kPatterned>(triangles, lane_ids, surface_id, x, y, begin, out)
+                                  : FetchVector<false, kPatterned>(triangles, lane_ids, surface_id, x, y, begin, out);
     const std::uint64_t mine = bits & BitsOfMask(of_surface);
     out.lanes[begin] = static_cast<std::uint32_t>(mine);
     all_mine |= mine << begin;

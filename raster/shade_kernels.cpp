@@ -14,6 +14,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "raster/shade_albedo-inl.h"
 #include "raster/shade_fetch-inl.h"
 #include "raster/srgb-inl.h"
 
@@ -48,6 +49,7 @@ struct SurfaceJob {
   BlockKernel kernel;
   std::uint32_t surface_id;
   float world_from_object_normal[9];  ///< by columns, the largest entry scaled to 1
+  float specular_strength;            ///< of the highlights' peak
   Vec3 ambient_middle;                ///< of a horizontal normal
   Vec3 ambient_rise;                  ///< from there to straight up
 };
@@ -55,7 +57,7 @@ struct SurfaceJob {
 /// Object to world space, unit length, turned round on back faces. A vanishing normal stays 0.
 HWY_INLINE void ToWorldNormal(const SurfaceJob& job, VU flip, VF& nx, VF& ny, VF& nz) {
   const float* m = job.world_from_object_normal;
-  const auto component = [&](int row) {
+  const auto component = [&](int row) HWY_ATTR {
     return Dot(Constant(m[row]), Constant(m[3 + row]), Constant(m[6 + row]), nx, ny, nz);
   };
   const VF wx = component(0);
@@ -68,15 +70,34 @@ HWY_INLINE void ToWorldNormal(const SurfaceJob& job, VU flip, VF& nx, VF& ny, VF
   nz = hn::Mul(wz, scale);
 }
 
+/// Unit vector towards the eye at a vector of pixels.
+HWY_INLINE void ToEye(const ShadeScene& scene, VF x, VF y, VF& vx, VF& vy, VF& vz) {
+  const auto component = [&](int axis) HWY_ATTR {
+    return hn::Add(hn::Add(Constant(scene.to_eye[axis]), hn::Mul(Constant(scene.to_eye_dx[axis]), x)),
+                   hn::Mul(Constant(scene.to_eye_dy[axis]), y));
+  };
+  const VF ex = component(0);
+  const VF ey = component(1);
+  const VF ez = component(2);
+  const VF inverse_length = InverseLength(Dot(ex, ey, ez, ex, ey, ez));
+  vx = hn::Mul(ex, inverse_length);
+  vy = hn::Mul(ey, inverse_length);
+  vz = hn::Mul(ez, inverse_length);
+}
+
+HWY_INLINE VF CosineToLight(const DirectionalLight& light, VF x, VF y, VF z) {
+  const Vec3& l = light.direction_to_light_world;
+  return Dot(Constant(l.x), Constant(l.y), Constant(l.z), x, y, z);
+}
+
 /// Multiplies the colour by the light that a Lambert surface sends on.
-HWY_INLINE void Illuminate(const SurfaceJob& job, VF nx, VF ny, VF nz, VF& r, VF& g, VF& b) {
+HWY_INLINE void AddDiffuse(const SurfaceJob& job, VF nx, VF ny, VF nz, VF& r, VF& g, VF& b) {
   VF light_r = hn::Add(Constant(job.ambient_middle.x), hn::Mul(Constant(job.ambient_rise.x), ny));
   VF light_g = hn::Add(Constant(job.ambient_middle.y), hn::Mul(Constant(job.ambient_rise.y), ny));
   VF light_b = hn::Add(Constant(job.ambient_middle.z), hn::Mul(Constant(job.ambient_rise.z), ny));
   for (int i = 0; i < job.scene->light_count; ++i) {
     const DirectionalLight& light = job.scene->lights[static_cast<std::size_t>(i)];
-    const Vec3& to_light = light.direction_to_light_world;
-    const VF cosine = AtLeastZero(Dot(Constant(to_light.x), Constant(to_light.y), Constant(to_light.z), nx, ny, nz));
+    const VF cosine = AtLeastZero(CosineToLight(light, nx, ny, nz));
     light_r = hn::Add(light_r, hn::Mul(Constant(light.radiance.x), cosine));
     light_g = hn::Add(light_g, hn::Mul(Constant(light.radiance.y), cosine));
     light_b = hn::Add(light_b, hn::Mul(Constant(light.radiance.z), cosine));
@@ -84,6 +105,30 @@ HWY_INLINE void Illuminate(const SurfaceJob& job, VF nx, VF ny, VF nz, VF& r, VF
   r = hn::Mul(r, light_r);
   g = hn::Mul(g, light_g);
   b = hn::Mul(b, light_b);
+}
+
+/// Adds Blinn-Phong highlights [Bli77] times (shininess + 8) / 8, which keeps their total about the same for any
+/// shininess, and times the cosine to the light, so that they fade out where the light grazes.
+/// With h = (l + v) / |l + v| for unit l and v: (n.h)^2 = (n.l + n.v)^2 / (2 + 2 l.v), no square root needed.
+HWY_INLINE void AddSpecular(const SurfaceJob& job, VF nx, VF ny, VF nz, VF x, VF y, VF& r, VF& g, VF& b) {
+  VF vx, vy, vz;
+  ToEye(*job.scene, x, y, vx, vy, vz);
+  const VF facing_eye = Dot(nx, ny, nz, vx, vy, vz);
+  const VF half_shininess = Constant(0.5F * job.material->shininess);
+  const VF strength = Constant(job.specular_strength);
+  for (int i = 0; i < job.scene->light_count; ++i) {
+    const DirectionalLight& light = job.scene->lights[static_cast<std::size_t>(i)];
+    const VF cosine = AtLeastZero(CosineToLight(light, nx, ny, nz));
+    const VF along_half = AtLeastZero(hn::Add(cosine, facing_eye));
+    const VF two = Constant(2.0F);
+    const VF half_squared = hn::Add(two, hn::Mul(two, CosineToLight(light, vx, vy, vz)));
+    const VF cosine_squared = Clamped(hn::Div(hn::Mul(along_half, along_half), half_squared), 1e-30F, 1.0F);
+    const VF lobe = Exp2(hn::Mul(half_shininess, Log2(cosine_squared)));
+    const VF glint = hn::Mul(hn::Mul(strength, lobe), cosine);
+    r = hn::Add(r, hn::Mul(Constant(light.radiance.x), glint));
+    g = hn::Add(g, hn::Mul(Constant(light.radiance.y), glint));
+    b = hn::Add(b, hn::Mul(Constant(light.radiance.z), glint));
+  }
 }
 
 /// Finite, not negative, whatever came in.
@@ -110,36 +155,49 @@ HWY_INLINE void StoreColors(std::uint64_t lanes, VF r, VF g, VF b, Block& block,
 }
 
 /// Shades those of the pending pixels (bits in tileIndex() order) that show the job's surface; returns the rest.
-template <ShadeModel kModel>
+template <ShadeModel kModel, bool kPatterned>
 std::uint64_t ShadeBlock(const SurfaceJob& job, Block& block, std::uint64_t pending, BlockFragments& fragments,
                          CornerNormals& last) {
   const DF d;
-  const std::uint64_t mine = FetchFragments<false>(job.scene->triangles.data(), block.triangle, job.surface_id, pending,
-                                                   block.x, block.y, fragments);
+  const DI di;
+  const std::uint64_t mine = FetchFragments<kPatterned>(job.scene->triangles.data(), block.triangle, job.surface_id,
+                                                        pending, block.x, block.y, fragments);
   if constexpr (kModel == ShadeModel::kSmooth) FetchSmoothNormals(job.surface->normal, fragments, last);
   if constexpr (kModel == ShadeModel::kFlat) FetchFlatNormals(job.surface->position_object, fragments);
+  if constexpr (kPatterned) FetchAlbedo(*job.surface, *job.material, fragments);
 
+  const bool has_specular = job.specular_strength > 0.0F;
+  constexpr std::int32_t kRowMask = kBlockSize - 1;
+  const VI lane = hn::Iota(di, 0);
+  const VI lane_x = hn::Add(hn::And(lane, hn::Set(di, kRowMask)), hn::Set(di, block.x));
+  const VI lane_y = hn::Add(hn::ShiftRight<3>(lane), hn::Set(di, block.y));
   for (std::size_t begin = 0; begin < kBlockPixels; begin += hn::Lanes(d)) {
     if (fragments.lanes[begin] == 0) continue;
-    VF r = Constant(job.material->base_color.x);
-    VF g = Constant(job.material->base_color.y);
-    VF b = Constant(job.material->base_color.z);
+    VF r = kPatterned ? hn::Load(d, fragments.albedo[0] + begin) : Constant(job.material->base_color.x);
+    VF g = kPatterned ? hn::Load(d, fragments.albedo[1] + begin) : Constant(job.material->base_color.y);
+    VF b = kPatterned ? hn::Load(d, fragments.albedo[2] + begin) : Constant(job.material->base_color.z);
     if constexpr (kModel != ShadeModel::kUnlit) {
       VF nx = hn::Load(d, fragments.normal[0] + begin);
       VF ny = hn::Load(d, fragments.normal[1] + begin);
       VF nz = hn::Load(d, fragments.normal[2] + begin);
       ToWorldNormal(job, hn::Load(DU(), fragments.flip + begin), nx, ny, nz);
-      Illuminate(job, nx, ny, nz, r, g, b);
+      AddDiffuse(job, nx, ny, nz, r, g, b);
+      if (has_specular) {
+        const VI x = hn::Add(lane_x, hn::Set(di, static_cast<std::int32_t>(begin) & kRowMask));
+        const VI y = hn::Add(lane_y, hn::Set(di, static_cast<std::int32_t>(begin) / kBlockSize));
+        AddSpecular(job, nx, ny, nz, hn::ConvertTo(d, x), hn::ConvertTo(d, y), r, g, b);
+      }
     }
     StoreColors(fragments.lanes[begin], r, g, b, block, begin);
   }
   return pending & ~mine;
 }
 
-BlockKernel SelectKernel(const Surface& surface, const ShadeMaterial& material) {
-  if (material.model == ShadeModel::kUnlit) return &ShadeBlock<ShadeModel::kUnlit>;
-  if (material.model == ShadeModel::kFlat || surface.normal == nullptr) return &ShadeBlock<ShadeModel::kFlat>;
-  return &ShadeBlock<ShadeModel::kSmooth>;
+template <bool kPatterned>
+BlockKernel SelectModel(const Surface& surface, ShadeModel model) {
+  if (model == ShadeModel::kUnlit) return &ShadeBlock<ShadeModel::kUnlit, kPatterned>;
+  if (model == ShadeModel::kFlat || surface.normal == nullptr) return &ShadeBlock<ShadeModel::kFlat, kPatterned>;
+  return &ShadeBlock<ShadeModel::kSmooth, kPatterned>;
 }
 
 SurfaceJob MakeSurfaceJob(const ShadeScene& scene, std::uint32_t surface_id) {
@@ -147,7 +205,9 @@ SurfaceJob MakeSurfaceJob(const ShadeScene& scene, std::uint32_t surface_id) {
   job.scene = &scene;
   job.surface = &scene.surfaces[surface_id];
   job.material = &scene.materials[job.surface->material];
-  job.kernel = SelectKernel(*job.surface, *job.material);
+  job.kernel = HasPattern(*job.surface, *job.material) ? SelectModel<true>(*job.surface, job.material->model)
+                                                       : SelectModel<false>(*job.surface, job.material->model);
+  job.specular_strength = job.material->specular * (job.material->shininess + 8.0F) / 8.0F;
   job.surface_id = surface_id;
   float largest = 0.0F;
   for (int column = 0; column < 3; ++column)
@@ -258,9 +318,8 @@ void WriteLinear(const Block& block, const Background& background, ImageF4& imag
   alignas(64) float values[kBlockPixels * 4];
   for (std::size_t begin = 0; begin < kBlockPixels; begin += hn::Lanes(d)) {
     const MF mask = MaskOfBits(block.covered >> begin);
-    const auto pick = [&](const float* color, float behind) {
-      return hn::IfThenElse(mask, hn::Load(d, color + begin), Constant(behind));
-    };
+    const auto pick = [&](const float* color, float behind)
+                          HWY_ATTR { return hn::IfThenElse(mask, hn::Load(d, color + begin), Constant(behind)); };
     const VF alpha = hn::IfThenElse(mask, Constant(1.0F), Constant(background.linear.w));
     hn::StoreInterleaved4(pick(block.colors.r, background.linear.x), pick(block.colors.g, background.linear.y),
                           pick(block.colors.b, background.linear.z), alpha, d, values + 4 * begin);

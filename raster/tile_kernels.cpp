@@ -170,26 +170,6 @@ HWY_INLINE VF WriteVector(VF z, M covered, std::uint32_t index, int p, TileState
   return now;
 }
 
-// A triangle's depth over the pixels of a block.
-class BlockDepth {
- public:
-  // x, y: the block's first pixel from the triangle's reference pixel
-  HWY_INLINE BlockDepth(const DepthPlane& plane, int x, int y)
-      : plane_(plane), x_(static_cast<float>(x)), y_(static_cast<float>(y)) {}
-
-  HWY_INLINE VF At(int p) const {
-    const VF dx = hn::Add(hn::Set(df, x_), hn::Load(df, kBlockOffsets.column + p));
-    const VF dy = hn::Add(hn::Set(df, y_), hn::Load(df, kBlockOffsets.row + p));
-    const VF z = hn::Add(hn::Add(hn::Set(df, plane_.z), hn::Mul(hn::Set(df, plane_.dzdx), dx)),
-                         hn::Mul(hn::Set(df, plane_.dzdy), dy));
-    return hn::Min(hn::Max(z, hn::Set(df, plane_.lo)), hn::Set(df, plane_.hi));
-  }
-
- private:
-  const DepthPlane& plane_;
-  float x_, y_;
-};
-
 // Change of an edge from the first pixel of a vector to its others: the same for every vector of a block.
 HWY_INLINE VI EdgeLanes(std::int32_t a, std::int32_t b) {
   const VI lane = hn::Iota(di, 0);
@@ -198,63 +178,82 @@ HWY_INLINE VI EdgeLanes(std::int32_t a, std::int32_t b) {
   return hn::Add(hn::Mul(hn::Set(di, a), column), hn::Mul(hn::Set(di, b), row));
 }
 
-// Draws the covered pixels with numbers [begin, end) of a block, whole vectors of them, and returns a depth that none
-// of them is behind. `N` edges are tested; c holds their values at the block's first pixel.
+// What does not change from block to block. The kernels below write 32-bit words, which might be these as far as the
+// compiler knows: loops work on copies in registers.
+struct TriangleInTile {
+  const LargeTriangle& triangle;
+  const TileEdges& edges;
+  int x0, y0;  // the tile's first pixel from the triangle's reference pixel
+};
+
+// Pixels with numbers [begin, end) of a block, whole vectors of them.
+struct BlockPixels {
+  int x, y;  // the block's first pixel, from the tile's
+  int begin, end;
+};
+
+// Draws those of the pixels that N edges leave covered; returns a depth that none of them is behind.
 template <int N>
-HWY_INLINE VF DrawBlockPixels(const TileEdges& edges, const std::int32_t* c, const BlockDepth& depth,
-                              std::uint32_t shade, int block, int begin, int end, TileState& state) {
+HWY_INLINE VF DrawPixels(const TriangleInTile& in, const BlockPixels& pixels, TileState& state) {
   const auto lanes = static_cast<int>(hn::Lanes(di));
+  const TileEdges edges = in.edges;
+  std::int32_t c[3] = {};
+  for (int i = 0; i < N; ++i) c[i] = edges.c[i] + edges.a[i] * pixels.x + edges.b[i] * pixels.y;
+  const VI lanes0 = N > 0 ? EdgeLanes(edges.a[0], edges.b[0]) : hn::Zero(di);
+  const VI lanes1 = N > 1 ? EdgeLanes(edges.a[1], edges.b[1]) : hn::Zero(di);
+  const VI lanes2 = N > 2 ? EdgeLanes(edges.a[2], edges.b[2]) : hn::Zero(di);
+  const DepthPlane& plane = in.triangle.depth;
+  const VF z_ref = hn::Set(df, plane.z);
+  const VF dzdx = hn::Set(df, plane.dzdx);
+  const VF dzdy = hn::Set(df, plane.dzdy);
+  const VF lo = hn::Set(df, plane.lo);
+  const VF hi = hn::Set(df, plane.hi);
+  const VF block_dx = hn::Set(df, static_cast<float>(in.x0 + pixels.x));
+  const VF block_dy = hn::Set(df, static_cast<float>(in.y0 + pixels.y));
+  const std::uint32_t shade = in.triangle.shade;
+  const int block = pixels.y * kTileSize + pixels.x * kBlockSize;  // number of the block's first pixel in the tile
+
   VF deepest = hn::Set(df, 1.0F);
-  for (int p = begin; p < end; p += lanes) {
+  for (int p = pixels.begin; p < pixels.end; p += lanes) {
+    const int column = p & (kBlockSize - 1);
+    const int row = p >> 3;
     VI outside = hn::Zero(di);
-    for (int i = 0; i < N; ++i) {
-      const std::int32_t at_vector = c[i] + edges.a[i] * (p & (kBlockSize - 1)) + edges.b[i] * (p >> 3);
-      outside = hn::Or(outside, hn::Add(hn::Set(di, at_vector), EdgeLanes(edges.a[i], edges.b[i])));
-    }
+    if (N > 0) outside = hn::Add(hn::Set(di, c[0] + edges.a[0] * column + edges.b[0] * row), lanes0);
+    if (N > 1) outside = hn::Or(outside, hn::Add(hn::Set(di, c[1] + edges.a[1] * column + edges.b[1] * row), lanes1));
+    if (N > 2) outside = hn::Or(outside, hn::Add(hn::Set(di, c[2] + edges.a[2] * column + edges.b[2] * row), lanes2));
+    const VF dx = hn::Add(block_dx, hn::Load(df, kBlockOffsets.column + p));
+    const VF dy = hn::Add(block_dy, hn::Load(df, kBlockOffsets.row + p));
+    const VF z_plane = hn::Add(hn::Add(z_ref, hn::Mul(dzdx, dx)), hn::Mul(dzdy, dy));
+    const VF z = hn::Min(hn::Max(z_plane, lo), hi);
     const auto covered = hn::RebindMask(df, hn::Not(hn::Lt(outside, hn::Zero(di))));
-    deepest = hn::Min(deepest, WriteVector(depth.At(p), covered, shade, block * kBlockPixels + p, state));
+    deepest = hn::Min(deepest, WriteVector(z, covered, shade, block + p, state));
   }
   return deepest;
 }
 
 // Triangles within a few blocks: every vector under the box is tested against all crossing edges.
 template <int N>
-void DrawMedium(const LargeTriangle& triangle, const TileEdges& edges, const TileBox& box, int x0, int y0,
-                TileState& state) {
+void DrawMedium(const TriangleInTile& in, const TileBox& box, TileState& state) {
   const auto lanes = static_cast<int>(hn::Lanes(di));
-  for (int by = box.y_min & ~7; by <= box.y_max; by += kBlockSize) {
-    const int begin = (std::max(box.y_min - by, 0) * kBlockSize) & ~(lanes - 1);
-    const int end = (std::min(box.y_max - by, kBlockSize - 1) + 1) * kBlockSize;
-    for (int bx = box.x_min & ~7; bx <= box.x_max; bx += kBlockSize) {
-      const int block = by + bx / kBlockSize;
-      if (triangle.depth.hi < state.farthest[block]) continue;
-      std::int32_t c[3];
-      for (int i = 0; i < N; ++i) c[i] = edges.c[i] + edges.a[i] * bx + edges.b[i] * by;
-      const BlockDepth depth(triangle.depth, x0 + bx - triangle.ref_x, y0 + by - triangle.ref_y);
-      DrawBlockPixels<N>(edges, c, depth, triangle.shade, block, begin, end, state);
-    }
+  for (int y = box.y_min & ~7; y <= box.y_max; y += kBlockSize) {
+    const int begin = (std::max(box.y_min - y, 0) * kBlockSize) & ~(lanes - 1);
+    const int end = (std::min(box.y_max - y, kBlockSize - 1) + 1) * kBlockSize;
+    for (int x = box.x_min & ~7; x <= box.x_max; x += kBlockSize)
+      if (!(in.triangle.depth.hi < state.farthest[y + x / kBlockSize])) DrawPixels<N>(in, {x, y, begin, end}, state);
   }
 }
 
 // Triangles over many blocks: blocks are sorted out first.
 template <int N>
-void DrawBig(const LargeTriangle& triangle, const TileEdges& edges, const TileBox& box, int x0, int y0,
-             TileState& state) {
-  const BlockMasks blocks = ClassifyBlocks(edges);
+void DrawBig(const TriangleInTile& in, const TileBox& box, TileState& state) {
+  const BlockMasks blocks = ClassifyBlocks(in.edges);
   for (std::uint64_t rest = blocks.touched & BlocksUnder(box); rest != 0; rest &= rest - 1) {
     const int block = std::countr_zero(rest);
-    if (triangle.depth.hi < state.farthest[block]) continue;
-    const int bx = (block % kBlocksPerTileSide) * kBlockSize;
-    const int by = (block / kBlocksPerTileSide) * kBlockSize;
-    const BlockDepth depth(triangle.depth, x0 + bx - triangle.ref_x, y0 + by - triangle.ref_y);
-    VF deepest;
-    if ((blocks.full >> block & 1U) != 0) {
-      deepest = DrawBlockPixels<0>(edges, nullptr, depth, triangle.shade, block, 0, kBlockPixels, state);
-    } else {
-      std::int32_t c[3];
-      for (int i = 0; i < N; ++i) c[i] = edges.c[i] + edges.a[i] * bx + edges.b[i] * by;
-      deepest = DrawBlockPixels<N>(edges, c, depth, triangle.shade, block, 0, kBlockPixels, state);
-    }
+    if (in.triangle.depth.hi < state.farthest[block]) continue;
+    const BlockPixels pixels{(block % kBlocksPerTileSide) * kBlockSize, (block / kBlocksPerTileSide) * kBlockSize, 0,
+                             kBlockPixels};
+    const bool full = (blocks.full >> block & 1U) != 0;
+    const VF deepest = full ? DrawPixels<0>(in, pixels, state) : DrawPixels<N>(in, pixels, state);
     state.farthest[block] = hn::GetLane(hn::MinOfLanes(df, deepest));
   }
 }
@@ -265,9 +264,10 @@ void DrawLarge(const LargeTriangle& triangle, int x0, int y0, TileState& state) 
   TileEdges edges;
   if (!EdgesInTile(triangle, x0, y0, edges)) return;
   const TileBox box = BoxInTile(triangle, x0, y0);
+  const TriangleInTile in{triangle, edges, x0 - triangle.ref_x, y0 - triangle.ref_y};
   const bool medium = box.x_max - box.x_min < kMediumSize && box.y_max - box.y_min < kMediumSize;
   const auto draw = [&]<int N>(std::integral_constant<int, N>) {
-    medium ? DrawMedium<N>(triangle, edges, box, x0, y0, state) : DrawBig<N>(triangle, edges, box, x0, y0, state);
+    medium ? DrawMedium<N>(in, box, state) : DrawBig<N>(in, box, state);
   };
   switch (edges.count) {
     case 0:

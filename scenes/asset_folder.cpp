@@ -1,6 +1,13 @@
 #include "scenes/asset_folder.h"
 
 #include <fmt/format.h>
+
+// Of the formats that stb_image reads, only these two are compiled in: other decoders of it have open memory-safety
+// reports. Static, since raster has a copy of its own.
+#define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
 #include <stb/stb_image.h>
 
 #include <algorithm>
@@ -77,7 +84,6 @@ std::string percentDecoded(std::string_view text) {
 }
 
 Image8 decodeImage(std::string_view bytes, std::string_view name) {
-  // stb_image reads more formats, whose decoders have open memory-safety reports: only these two reach it.
   const bool png = bytes.starts_with("\x89PNG");
   const bool jpeg = bytes.starts_with("\xFF\xD8\xFF");
   if (!png && !jpeg) refuse(name, bytes.empty() ? "image is empty" : "image is neither PNG nor JPEG");

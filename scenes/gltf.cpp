@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <set>
 #include <utility>
@@ -18,6 +19,9 @@ namespace sheaf::scenes {
 namespace {
 
 constexpr std::size_t kMostInstances = std::size_t{1} << 24;  // a few bytes of JSON each: no more is meant seriously
+
+// Primitives may share their accessors, so that the size of the file bounds nothing: 2^28 take 3 GB.
+constexpr std::size_t kMostTriangles = std::size_t{1} << 28;
 
 // The triangles of a primitive from its list of vertices.
 std::vector<mesh::Triangle> assemble(const std::vector<std::uint32_t>& v, int mode) {
@@ -60,10 +64,11 @@ std::vector<glm::vec<N, float>> vectorsOf(const std::vector<float>& numbers) {
   return out;
 }
 
+// As floats, since that is what drawing makes of them.
 bool allFinite(const DMat4& m) {
   for (int c = 0; c < 4; ++c)
     for (int r = 0; r < 4; ++r)
-      if (!std::isfinite(m[c][r])) return false;
+      if (!(std::abs(m[c][r]) <= std::numeric_limits<float>::max())) return false;
   return true;
 }
 
@@ -245,6 +250,8 @@ class GltfImporter {
       return attributeNumbers(primitive, name, components, least, vertex_count, selection, place);
     };
     if (mesh.triangles.empty()) return;
+    triangle_count_ += mesh.triangleCount();
+    if (triangle_count_ > kMostTriangles) document_.fail(fmt::format("has more than {} triangles", kMostTriangles));
     mesh.positions = vectorsOf<3>(numbers("POSITION", 3, 3));
     mesh.normals = vectorsOf<3>(numbers("NORMAL", 3, 3));
     mesh.colors = vectorsOf<4>(numbers("COLOR_0", 4, 3));
@@ -306,7 +313,13 @@ class GltfImporter {
     }
     DVec3 color(1.0);
     if (source.color.size() == 3) color = {source.color[0], source.color[1], source.color[2]};
-    scene_.lights.push_back({Vec3(glm::normalize(to_light)), Vec3(color * (source.intensity / kPi))});
+    const DVec3 radiance = color * (source.intensity / kPi);
+    if (!(std::min({radiance.r, radiance.g, radiance.b}) >= 0.0 &&
+          std::max({radiance.r, radiance.g, radiance.b}) < 1e30)) {
+      warn(fmt::format("light {} left out: its intensity cannot be used", number));
+      return;
+    }
+    scene_.lights.push_back({Vec3(glm::normalize(to_light)), Vec3(radiance)});
   }
 
   void warn(std::string_view text) { scene_.warnings.push_back(fmt::format("{}: {}", document_.name(), text)); }
@@ -315,6 +328,7 @@ class GltfImporter {
   GltfDocument document_;
   GltfMaterials materials_;
   std::vector<std::optional<std::vector<Part>>> parts_;
+  std::size_t triangle_count_ = 0;
   std::size_t points_and_lines_ = 0;
   std::size_t unpositioned_ = 0;
   std::size_t not_finite_ = 0;  ///< primitives all of whose triangles were left out

@@ -24,7 +24,10 @@ std::pair<double, double> pairOf(const tinygltf::Value& object, const char* key,
   const tinygltf::Value& value = object.Get(key);
   if (!value.IsArray() || value.ArrayLen() != 2 || !value.Get(0).IsNumber() || !value.Get(1).IsNumber())
     return {fallback, fallback};
-  return {value.Get(0).GetNumberAsDouble(), value.Get(1).GetNumberAsDouble()};
+  const double first = value.Get(0).GetNumberAsDouble(), second = value.Get(1).GetNumberAsDouble();
+  constexpr double kMost = 1e6;  // far from where a float has no fraction of a texel left
+  if (std::abs(first) > kMost || std::abs(second) > kMost) return {fallback, fallback};
+  return {first, second};
 }
 
 // offset + R S uv with u' = c u + s v, v' = c v - s u: counter-clockwise as one sees the image, v downwards. That is

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <new>
 #include <string_view>
 #include <utility>
@@ -64,8 +65,15 @@ Scene import(ImportSource source, const ImportOptions& options) {
   refuseUnsupported(source.name, "is of no known format (known are glTF, GLB, OBJ, PLY, STL and OFF)");
 }
 
-// A mesh that is drawn with a texture but has no texture coordinates shows one texel: nobody downstream has to ask.
-void completeTexcoords(Scene& scene) {
+// What shading may rely on: a mesh that is drawn with a texture has texture coordinates (one texel if the file has
+// none), and texture coordinates and colours are finite.
+void completeAttributes(Scene& scene) {
+  for (mesh::Mesh& mesh : scene.meshes) {
+    for (Vec2& uv : mesh.texcoords)
+      if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = Vec2(0.0F);
+    for (Vec4& color : mesh.colors)
+      if (!isFinite(Vec3(color)) || !std::isfinite(color.a)) color = Vec4(1.0F);
+  }
   for (const Instance& instance : scene.instances) {
     mesh::Mesh& mesh = scene.meshes[instance.mesh];
     if (scene.materials[instance.material].base_color_texture.texture >= 0 && mesh.texcoords.empty())
@@ -97,7 +105,7 @@ Scene loadScene(const std::string& input, const ImportOptions& options) {
     ImportSource source{path, path.string(), readFile(path)};
     if (source.bytes.empty()) refuse(source.name, "file is empty");
     Scene scene = import(std::move(source), options);
-    completeTexcoords(scene);
+    completeAttributes(scene);
     scene.name = path.filename().string();
     if (options.z_up) turnZUp(scene);
     return scene;

@@ -7,8 +7,10 @@
 #include <tiny_obj_loader.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
+#include <span>
 #include <sstream>
 #include <unordered_map>
 #include <utility>

@@ -1,0 +1,246 @@
+// The command as a whole: help, version, scenes, info, exit codes, and what goes to which stream.
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/run.h"
+
+namespace sheaf::cli {
+namespace {
+
+constexpr const char* kTriangleStl =
+    "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid "
+    "t\n";
+
+}  // namespace
+
+TEST_CASE("cli/command: help goes to stdout and names every option, examples and exit codes") {
+  const TempFolder folder;
+  const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> expected = {
+      {{"--help"}, {"render", "compare", "info", "scenes", "--version", "builtin:", "Examples", "Exit codes", "70"}},
+      {{"render", "--help"},
+       {"INPUT",
+        "-o,",
+        "--output",
+        "--size",
+        "--view",
+        "--orbit",
+        "--eye",
+        "--target",
+        "--up",
+        "--fov",
+        "--orthographic",
+        "--camera",
+        "--background",
+        "--threads",
+        "--no-patch-culling",
+        "--crease",
+        "--timings",
+        "--trace",
+        "--frames",
+        "--simd",
+        "-q,",
+        "--quiet",
+        "--channels",
+        "iso",
+        "1280x720",
+        "Examples",
+        "Exit codes"}},
+      {{"compare", "-h"}, {"-o,", "--max-differing", "--max-error", "--min-psnr", "--json", "Examples", "Exit codes"}},
+      {{"info", "--help"}, {"--json", "--quiet", "Exit codes"}},
+      {{"scenes", "--help"}, {"--json", "Exit codes"}}};
+  for (const auto& [arguments, words] : expected) {
+    CAPTURE(arguments.front());
+    const RunResult result = runSheaf(folder, arguments);
+    CHECK(result.code == 0);
+    CHECK(result.err.empty());
+    for (const std::string& word : words) CHECK_MESSAGE(result.out.find(word) != std::string::npos, word);
+  }
+}
+
+TEST_CASE("cli/command: --version names version, compiler and SIMD targets") {
+  const RunResult result = runSheaf(TempFolder(), {"--version"});
+  CHECK(result.code == 0);
+  CHECK(result.out.starts_with("sheaf "));
+  CHECK(result.out.find("SIMD targets") != std::string::npos);
+  CHECK(result.err.empty());
+}
+
+TEST_CASE("cli/command: wrong usage is one line on stderr, nothing on stdout, exit code 2, no file") {
+  const TempFolder folder;
+  folder.write("t.stl", kTriangleStl);
+  const std::vector<std::vector<std::string>> wrong = {
+      {},
+      {"nosuchcommand"},
+      {"--nosuchoption"},
+      {"render"},
+      {"render", "builtin:sphere"},
+      {"render", "builtin:sphere", "-o"},
+      {"render", "builtin:sphere", "-o", ""},
+      {"render", "builtin:sphere", "-o", "x.xyz"},
+      {"render", "builtin:sphere", "-o", "x.png", "--nosuchoption"},
+      {"render", "builtin:sphere", "-o", "x.png", "extra"},
+      {"render", "builtin:sphere", "-o", "x.png", "--size", "0x0"},
+      {"render", "builtin:sphere", "-o", "x.png", "--size", "99999x1"},
+      {"render", "builtin:sphere", "-o", "x.png", "--size="},
+      {"render", "builtin:sphere", "-o", "x.png", "--size", ""},
+      {"render", "builtin:sphere", "-o", "x.png", "--view", "sideways"},
+      {"render", "builtin:sphere", "-o", "x.png", "--view", "iso", "--orbit", "1,2"},
+      {"render", "builtin:sphere", "-o", "x.png", "--orbit", "0,90"},
+      {"render", "builtin:sphere", "-o", "x.png", "--eye", "1,1,1", "--camera", "0"},
+      {"render", "builtin:sphere", "-o", "x.png", "--eye", "1,1,1", "--target", "1,1,1"},
+      {"render", "builtin:sphere", "-o", "x.png", "--target", "1,1,1"},
+      {"render", "builtin:sphere", "-o", "x.png", "--up", "0,1,0"},
+      {"render", "builtin:sphere", "-o", "x.png", "--up", "z"},
+      {"render", "t.stl", "-o", "x.png", "--up", "z", "--up", "y"},
+      {"render", "builtin:sphere", "-o", "x.png", "--crease", "30"},
+      {"render", "t.stl", "-o", "x.png", "--crease", "181"},
+      {"render", "builtin:sphere", "-o", "x.png", "--fov", "0"},
+      {"render", "builtin:sphere", "-o", "x.png", "--fov", "40", "--orthographic"},
+      {"render", "builtin:sphere", "-o", "x.png", "--camera", "nosuchcamera"},
+      {"render", "builtin:sphere", "-o", "x.png", "--background", "puce"},
+      {"render", "builtin:sphere", "-o", "x.jpg", "--background", "transparent"},
+      {"render", "builtin:sphere", "-o", "x.png", "--threads", "0"},
+      {"render", "builtin:sphere", "-o", "x.png", "--threads", "1.5"},
+      {"render", "builtin:sphere", "-o", "x.png", "--frames", "3"},
+      {"render", "builtin:sphere", "-o", "x.png", "--timings", "--frames", "0"},
+      {"render", "builtin:sphere", "-o", "x.png", "--simd", "MMX"},
+      {"render", "builtin:sphere", "-o", "x.png", "--channels", "depth"},
+      {"render", "builtin:sphere", "-o", "x.exr", "--channels", "smell"},
+      {"render", "builtin:sphere", "-o", "x.png", "--timings=x.png"},
+      {"render", "builtin:sphere", "-o", "x.png", "--trace", "./x.png"},
+      {"render", "t.stl", "-o", "x.png", "--trace", "t.stl"},
+      {"render", "builtin:nosuchscene", "-o", "x.png"},
+      {"render", "builtin:sphere?nosuchparameter=1", "-o", "x.png"},
+      {"compare", "a.png"},
+      {"compare", "a.png", "b.png", "--max-differing", "lots"},
+      {"compare", "a.png", "b.png", "--max-error", "256"},
+      {"compare", "a.png", "b.png", "-o", "a.png"},
+      {"compare", "a.png", "b.png", "-o", "heat.exr"},
+      {"info"},
+      {"scenes", "extra"},
+  };
+  for (const auto& arguments : wrong) {
+    std::string line;
+    for (const std::string& word : arguments) line += word + " ";
+    CAPTURE(line);
+    const RunResult result = runSheaf(folder, arguments);
+    CAPTURE(result.err);
+    CHECK(result.code == 2);
+    CHECK(result.out.empty());
+    CHECK(isOneErrorLine(result.err));
+    CHECK(folder.fileCount() == 1);
+  }
+}
+
+TEST_CASE("cli/command: bad input is one line that names the file, exit code 3, no file") {
+  const TempFolder folder;
+  folder.write("empty.stl", "");
+  folder.write("cut.stl", std::string(90, '\1'));
+  folder.write("range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+  std::filesystem::create_directory(folder.file("folder"));
+  const std::size_t files = folder.fileCount();
+  const std::vector<std::vector<std::string>> bad = {
+      {"render", "missing.stl", "-o", "x.png"},
+      {"render", "empty.stl", "-o", "x.png"},
+      {"render", "cut.stl", "-o", "x.png"},
+      {"render", "range.obj", "-o", "x.png"},
+      {"render", "folder", "-o", "x.png"},
+      {"info", "missing.ply"},
+      {"compare", "missing.png", "empty.stl"},
+      {"compare", "cut.stl", "cut.stl"},
+      {"render", "builtin:sphere", "-o", "no/such/folder/x.png"},
+      {"render", "builtin:sphere", "--trace", "no/such/folder/x.json"},
+      {"render", "builtin:sphere", "--timings=folder"},
+      {"render", "builtin:sphere", "-o", "empty.stl/x.png"},
+  };
+  for (const auto& arguments : bad) {
+    CAPTURE(arguments[1]);
+    CAPTURE(arguments.back());
+    const RunResult result = runSheaf(folder, arguments);
+    CAPTURE(result.err);
+    CHECK(result.code == 3);
+    CHECK(result.out.empty());
+    CHECK(isOneErrorLine(result.err));
+    CHECK(folder.fileCount() == files);
+  }
+}
+
+TEST_CASE("cli/command: a format without its module is unsupported, exit code 4") {
+  const TempFolder folder;
+  folder.write("sheaf_oiio.so", "not a module");
+  const RunResult result =
+      runSheaf(folder, {"render", "builtin:sphere", "-o", "x.exr"},
+               {.environment = {{"SHEAF_MODULE_DIR", folder.path().string()}}, .max_memory = 0, .out_path = {}});
+  CAPTURE(result.err);
+  CHECK(result.code == 4);
+  CHECK(isOneErrorLine(result.err));
+  CHECK(!folder.has("x.exr"));
+}
+
+#ifndef __SANITIZE_ADDRESS__
+TEST_CASE("cli/command: running out of memory is an internal error, exit code 70, no file") {
+  const TempFolder folder;
+  const RunResult result = runSheaf(folder, {"render", "builtin:sphere", "-o", "x.png", "--size", "16384x16384"},
+                                    {.environment = {}, .max_memory = std::size_t{600} << 20, .out_path = {}});
+  CAPTURE(result.err);
+  CHECK(result.code == 70);
+  CHECK(result.err.find("internal error") != std::string::npos);
+  CHECK(isOneErrorLine(result.err));
+  CHECK(folder.fileCount() == 0);
+}
+#endif
+
+TEST_CASE("cli/command: a full disk under stdout is noticed") {
+  if (!std::filesystem::exists("/dev/full")) return;
+  const TempFolder folder;
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"scenes"}, {"render", "builtin:sphere?n=4", "-o", "-"}}) {
+    const RunResult result = runSheaf(folder, arguments, {.environment = {}, .max_memory = 0, .out_path = "/dev/full"});
+    CHECK(result.code == 3);
+    CHECK(isOneErrorLine(result.err));
+  }
+}
+
+TEST_CASE("cli/command: scenes lists the built-in scenes, as text and as JSON") {
+  const TempFolder folder;
+  const RunResult text = runSheaf(folder, {"scenes"});
+  CHECK(text.code == 0);
+  CHECK(text.err.empty());
+  const RunResult json_text = runSheaf(folder, {"scenes", "--json"});
+  CHECK(json_text.code == 0);
+  const auto json = nlohmann::json::parse(json_text.out);
+  REQUIRE(json.size() >= 5);
+  for (const auto& scene : json) {
+    CHECK(text.out.find("builtin:" + scene["name"].get<std::string>()) != std::string::npos);
+    for (const auto& parameter : scene["parameters"]) {
+      CHECK(parameter["min"].get<double>() <= parameter["default"].get<double>());
+      CHECK(parameter["default"].get<double>() <= parameter["max"].get<double>());
+    }
+  }
+}
+
+TEST_CASE("cli/command: info says what is in a file, as text and as JSON, with warnings on stderr") {
+  const TempFolder folder;
+  folder.write("t.stl", kTriangleStl);
+  folder.write("w.obj", "mtllib missing.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const RunResult text = runSheaf(folder, {"info", "t.stl"});
+  CHECK(text.code == 0);
+  CHECK(text.err.empty());
+  CHECK(text.out.find("1 triangles") != std::string::npos);
+  const auto json = nlohmann::json::parse(runSheaf(folder, {"info", "t.stl", "--json"}).out);
+  CHECK(json["triangles"] == 1);
+  CHECK(json["vertices"] == 3);
+  CHECK(json["bounds"]["max"] == nlohmann::json::array({1.0, 1.0, 0.0}));
+  CHECK(json["warnings"].empty());
+
+  const RunResult warned = runSheaf(folder, {"info", "w.obj"});
+  CHECK(warned.code == 0);
+  CHECK(warned.err.starts_with("warning: "));
+  CHECK(warned.out.find("warning: ") == std::string::npos);
+  CHECK(runSheaf(folder, {"info", "w.obj", "-q"}).err.empty());
+  const RunResult warned_json = runSheaf(folder, {"info", "w.obj", "--json"});
+  CHECK(nlohmann::json::parse(warned_json.out)["warnings"].size() == 1);
+}
+
+}  // namespace sheaf::cli

@@ -1,0 +1,166 @@
+#include "grouping/groups_file.h"
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <cstring>
+#include <limits>
+
+#include "core/error.h"
+#include "grouping/linear_groups.h"
+#include "grouping/planar_groups.h"
+#include "tests/grouping/shapes.h"
+
+namespace sheaf::grouping {
+namespace {
+
+constexpr std::size_t kChecksumAt = 20, kContentAt = 24;
+
+// A damaged file whose checksum has been put right.
+std::string resealed(std::string bytes) {
+  const auto* raw = reinterpret_cast<const Bytef*>(bytes.data());
+  uLong crc = crc32(crc32(0, nullptr, 0), raw, kChecksumAt);
+  crc = crc32(crc, raw + kContentAt, static_cast<uInt>(bytes.size() - kContentAt));
+  const auto sum = static_cast<std::uint32_t>(crc);
+  std::memcpy(bytes.data() + kChecksumAt, &sum, sizeof sum);
+  return bytes;
+}
+
+std::vector<VertexGroups> assortedGroups() {
+  std::mt19937 rng(0xf11e);
+  const mesh::Mesh ball = lumpyBall(rng, 12, 16, 0.01F);
+  PlanarOptions quadric;
+  quadric.metric = Metric::kQuadric;
+  quadric.planes = axisAndDodecahedronPlanes();
+  LinearOptions segments;
+  segments.segment_only = true;
+  quadric.epsilon = segments.epsilon = 0.02;
+  PlanarOptions fallback;
+  fallback.metric = Metric::kQuadric;
+  return {groupPlanar(ball, {}), groupPlanar(ball, quadric),  groupPlanar(randomPoints(rng, 100), fallback),
+          groupLinear(ball, {}), groupLinear(ball, segments), groupPlanar({}, {})};
+}
+
+VertexGroups smallGroups(GroupKind kind) {
+  std::mt19937 rng(0xf11f);
+  mesh::Mesh mesh = latticePoints(rng, 12, 2);
+  for (std::uint32_t v = 0; v + 3 < 12; ++v) mesh.triangles.push_back({v, v + 1, v + 2});  // 11 is unused
+  LinearOptions linear;
+  linear.epsilon = 0.1;
+  return kind == GroupKind::kPlane ? groupPlanar(mesh, {}) : groupLinear(mesh, linear);
+}
+
+}  // namespace
+
+TEST_CASE("grouping/groups_file: what is loaded equals what was saved") {
+  for (const VertexGroups& groups : assortedGroups()) {
+    CHECK(decodeGroups(encodeGroups(groups), "x") == groups);
+  }
+  const auto path =
+      std::filesystem::temp_directory_path() / ("groups_file_test." + std::to_string(getpid()) + ".sheaf");
+  const VertexGroups groups = assortedGroups()[0];
+  saveGroups(path, groups);
+  CHECK(loadGroups(path) == groups);
+  std::filesystem::remove(path);
+  CHECK_THROWS_AS(loadGroups(path), Error);
+}
+
+TEST_CASE("grouping/groups_file: quantised parameters keep within half a step, and a second saving changes nothing") {
+  for (const VertexGroups& groups : assortedGroups())
+    for (const int bits : {1, 10, 16, 24}) {
+      CAPTURE(bits);
+      GroupsFileOptions options;
+      options.parameter_bits = bits;
+      const VertexGroups loaded = decodeGroups(encodeGroups(groups, options), "x");
+      CHECK(loaded.state == groups.state);
+      CHECK(loaded.members == groups.members);
+      const double steps = std::ldexp(1.0, bits) - 1.0;
+      for (const VertexGroup& g : groups.groups)
+        for (std::uint32_t m = g.first_member; m < g.first_member + g.member_count; ++m) {
+          CHECK(std::abs(loaded.s[m] - groups.s[m]) <= (0.5 / steps + 1e-6) * (g.s_max - g.s_min));
+          CHECK(std::abs(loaded.t[m] - groups.t[m]) <= (0.5 / steps + 1e-6) * (g.t_max - g.t_min));
+        }
+      CHECK(encodeGroups(loaded, options) == encodeGroups(groups, options));
+    }
+  const VertexGroups groups = assortedGroups()[0];
+  GroupsFileOptions options;
+  options.parameter_bits = 10;
+  CHECK(encodeGroups(groups, options).size() < encodeGroups(groups).size());
+}
+
+TEST_CASE("grouping/groups_file: a file with any byte changed is refused") {
+  for (const GroupKind kind : {GroupKind::kPlane, GroupKind::kLine}) {
+    const std::string good = encodeGroups(smallGroups(kind));
+    REQUIRE_NOTHROW(decodeGroups(good, "x"));
+    for (std::size_t i = 0; i < good.size(); ++i)
+      for (const int change : {0x01, 0x80, 0xFF}) {
+        std::string bad = good;
+        bad[i] = static_cast<char>(bad[i] ^ change);
+        CAPTURE(i);
+        CHECK_THROWS_AS(decodeGroups(bad, "x"), Error);
+      }
+  }
+}
+
+TEST_CASE("grouping/groups_file: a forged file is refused or consistent") {
+  for (const GroupKind kind : {GroupKind::kPlane, GroupKind::kLine})
+    for (const int bits : {0, 12}) {
+      GroupsFileOptions options;
+      options.parameter_bits = bits;
+      const std::string good = encodeGroups(smallGroups(kind), options);
+      int refused = 0;
+      for (std::size_t i = kContentAt; i < good.size(); ++i)
+        for (int change = 1; change < 256; change += 2) {
+          std::string bad = good;
+          bad[i] = static_cast<char>(bad[i] ^ change);
+          CAPTURE(i);
+          CAPTURE(change);
+          try {
+            const VertexGroups loaded = decodeGroups(resealed(bad), "x");
+            CHECK(findInconsistency(loaded) == "");
+          } catch (const Error& error) {
+            CHECK(error.code() == ErrorCode::kBadInput);
+            ++refused;
+          }
+        }
+      CHECK(refused > 0);
+    }
+}
+
+TEST_CASE("grouping/groups_file: a truncated or extended file is refused") {
+  const std::string good = encodeGroups(smallGroups(GroupKind::kPlane));
+  for (std::size_t size = 0; size < good.size(); ++size) {
+    CAPTURE(size);
+    CHECK_THROWS_AS(decodeGroups(good.substr(0, size), "x"), Error);
+    if (size < kContentAt) continue;
+    std::string forged = good.substr(0, size);
+    const std::uint64_t content = size - kContentAt;
+    std::memcpy(forged.data() + 12, &content, sizeof content);
+    CHECK_THROWS_AS(decodeGroups(resealed(forged), "x"), Error);
+  }
+  CHECK_THROWS_AS(decodeGroups(good + "x", "x"), Error);
+}
+
+TEST_CASE("grouping/groups_file: refusals name the file and the reason") {
+  CHECK_THROWS_WITH_AS(decodeGroups("solid cube", "cube.stl"), "cube.stl: is not a file of vertex groups", Error);
+  std::string newer = encodeGroups(smallGroups(GroupKind::kPlane));
+  newer[8] = 2;
+  try {
+    decodeGroups(newer, "a.sheaf");
+    FAIL("accepted");
+  } catch (const Error& error) {
+    CHECK(error.code() == ErrorCode::kUnsupported);
+    CHECK(std::string(error.what()) == "a.sheaf: has version 2 of vertex groups, this reads version 1");
+  }
+}
+
+TEST_CASE("grouping/groups_file: unused vertices keep their bits, also those of no number") {
+  std::mt19937 rng(0xf120);
+  mesh::Mesh mesh = lumpyBall(rng, 6, 8);
+  mesh.positions.push_back(Vec3(std::numeric_limits<float>::quiet_NaN()));
+  const std::string bytes = encodeGroups(groupPlanar(mesh, {}));
+  CHECK(encodeGroups(decodeGroups(bytes, "x")) == bytes);
+}
+
+}  // namespace sheaf::grouping

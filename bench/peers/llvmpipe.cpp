@@ -74,7 +74,8 @@ void main() {
 }
 )";
 
-// The sRGB code is made by the framebuffer: llvmpipe does that faster than pow() in the shader.
+// The sRGB code is made by the framebuffer; pow() here instead made no difference to the time that could be told from
+// the noise.
 constexpr char kFragmentShader[] = R"(#version 300 es
 precision highp float;
 uniform vec3 base_color;

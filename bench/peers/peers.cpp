@@ -243,7 +243,7 @@ int run(const Options& options) {
   fs::create_directories(options.folder);
   fmt::print("{}x{}, {} threads each, median of {} rounds of {} frames in turns; pictures in {}\n", kWidth, kHeight,
              options.threads, options.rounds, options.frames, options.folder.string());
-  fmt::print("{:30} {:>9} {:>10} {:>9} {:>9} {:>8} {:>12} {:>9}\n", "scene", "triangles", "in view", "sheaf ms",
+  fmt::print("{:30} {:>9} {:>10} {:>9} {:>9} {:>8} {:>12} {:>9}\n", "scene", "triangles", "assembled", "sheaf ms",
              "llvmpipe", "ratio", "of rounds", "RMS/255");
   for (const Case& which : cases())
     if (which.name.find(options.only) != std::string::npos) compare(which, options);

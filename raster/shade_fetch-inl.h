@@ -74,7 +74,7 @@ HWY_INLINE hn::Vec<D> LoadQuads(D d, const std::uint32_t* words, const std::uint
 }
 
 /// Words 0 to 3 of each lane's record. A record is one cache line, so that a quarter of it is loaded whole and
-/// transposed: gathers, one per word and lane, take about three times as long.
+/// transposed: a quarter as many loads as gathers need, which read one word at a time.
 HWY_INLINE void LoadFourWords(const std::uint32_t* words, const std::uint32_t* ids, VU& a, VU& b, VU& c, VU& d) {
   const DU du;
   const hn::Repartition<std::uint64_t, DU> d64;

@@ -6,6 +6,8 @@
 
 #include <hwy/highway.h>
 
+#include "raster/gather-inl.h"
+
 #if defined(SHEAF_RASTER_SHADE_MATH_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHEAF_RASTER_SHADE_MATH_INL_H_
 #undef SHEAF_RASTER_SHADE_MATH_INL_H_
@@ -31,55 +33,6 @@ inline constexpr std::size_t kMaxLanes = 16;
 HWY_INLINE VF Constant(float value) {
   return hn::Set(DF(), value);
 }
-
-// base[index], as hn::GatherIndex. The gather instructions of x86 leave masked-off lanes of the destination as they
-// were. GCC sees that the mask of a plain gather is full and gives it any register to write to; the processor does not,
-// and waits for what that register held before, often the end of a long chain. Here the destination is zero and the
-// mask opaque to the compiler: frames of small triangles shade a fifth faster.
-#if HWY_COMPILER_GCC_ACTUAL && (HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL)
-
-HWY_INLINE __mmask16 OpaqueFullMask() {
-  __mmask16 full = 0xFFFF;
-  asm("" : "+Yk"(full));
-  return full;
-}
-
-HWY_INLINE VI Gather(const std::int32_t* base, VI index) {
-  return VI{_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), OpaqueFullMask(), index.raw, base, 4)};
-}
-
-HWY_INLINE VF Gather(const float* base, VI index) {
-  return VF{_mm512_mask_i32gather_ps(_mm512_setzero_ps(), OpaqueFullMask(), index.raw, base, 4)};
-}
-
-#elif HWY_COMPILER_GCC_ACTUAL && HWY_TARGET == HWY_AVX2
-
-HWY_INLINE __m256i OpaqueFullMask() {
-  __m256i full = _mm256_set1_epi32(-1);
-  asm("" : "+x"(full));
-  return full;
-}
-
-HWY_INLINE VI Gather(const std::int32_t* base, VI index) {
-  return VI{_mm256_mask_i32gather_epi32(_mm256_setzero_si256(), base, index.raw, OpaqueFullMask(), 4)};
-}
-
-HWY_INLINE VF Gather(const float* base, VI index) {
-  const __m256 mask = _mm256_castsi256_ps(OpaqueFullMask());
-  return VF{_mm256_mask_i32gather_ps(_mm256_setzero_ps(), base, index.raw, mask, 4)};
-}
-
-#else
-
-HWY_INLINE VI Gather(const std::int32_t* base, VI index) {
-  return hn::GatherIndex(DI(), base, index);
-}
-
-HWY_INLINE VF Gather(const float* base, VI index) {
-  return hn::GatherIndex(DF(), base, index);
-}
-
-#endif
 
 HWY_INLINE VU Gather(const std::uint32_t* base, VI index) {
   return hn::BitCast(DU(), Gather(reinterpret_cast<const std::int32_t*>(base), index));

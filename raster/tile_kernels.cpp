@@ -24,12 +24,18 @@ using VF = hn::Vec<decltype(df)>;
 struct BlockOffsets {
   alignas(64) float column[kBlockPixels];
   alignas(64) float row[kBlockPixels];
+  alignas(64) std::int32_t lane_column[kMaxLanes];  // of the first vector
+  alignas(64) std::int32_t lane_row[kMaxLanes];
 };
 constexpr BlockOffsets MakeBlockOffsets() {
   BlockOffsets offsets{};
   for (int p = 0; p < kBlockPixels; ++p) {
     offsets.column[p] = static_cast<float>(p % kBlockSize);
     offsets.row[p] = static_cast<float>(p / kBlockSize);
+  }
+  for (int lane = 0; lane < static_cast<int>(kMaxLanes); ++lane) {
+    offsets.lane_column[lane] = lane % kBlockSize;
+    offsets.lane_row[lane] = lane / kBlockSize;
   }
   return offsets;
 }
@@ -171,9 +177,9 @@ HWY_INLINE VF WriteVector(VF z, M covered, std::uint32_t index, int p, TileState
 
 // Change of an edge from the first pixel of a vector to its others: the same for every vector of a block.
 HWY_INLINE VI EdgeLanes(std::int32_t a, std::int32_t b) {
-  const VI lane = hn::Iota(di, 0);
-  const VI column = hn::And(lane, hn::Set(di, kBlockSize - 1));
-  const VI row = hn::ShiftRight<3>(lane);
+  // hn::Iota goes through memory, lane by lane: too slow here.
+  const VI column = hn::Load(di, kBlockOffsets.lane_column);
+  const VI row = hn::Load(di, kBlockOffsets.lane_row);
   return hn::Add(hn::Mul(hn::Set(di, a), column), hn::Mul(hn::Set(di, b), row));
 }
 

@@ -6,6 +6,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "raster/gather-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::raster::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -140,12 +142,12 @@ void SetupTriangles(const ScreenVertices& vertices, const PatchTriangles& triang
     const VI i0 = hn::PromoteTo(di, hn::LoadU(du8, triangles.corner[0] + t));
     VI i1 = hn::PromoteTo(di, hn::LoadU(du8, triangles.corner[1] + t));
     VI i2 = hn::PromoteTo(di, hn::LoadU(du8, triangles.corner[2] + t));
-    const VI x0 = hn::GatherIndex(di, vertices.x_fx, i0);
-    const VI y0 = hn::GatherIndex(di, vertices.y_fx, i0);
-    VI x1 = hn::GatherIndex(di, vertices.x_fx, i1);
-    VI y1 = hn::GatherIndex(di, vertices.y_fx, i1);
-    VI x2 = hn::GatherIndex(di, vertices.x_fx, i2);
-    VI y2 = hn::GatherIndex(di, vertices.y_fx, i2);
+    const VI x0 = Gather(vertices.x_fx, i0);
+    const VI y0 = Gather(vertices.y_fx, i0);
+    VI x1 = Gather(vertices.x_fx, i1);
+    VI y1 = Gather(vertices.y_fx, i1);
+    VI x2 = Gather(vertices.x_fx, i2);
+    VI y2 = Gather(vertices.y_fx, i2);
 
     // Bound them, in subpixels and in pixels whose centres may be covered.
     const VI x_lo = hn::Min(hn::Min(x0, x1), x2);
@@ -225,9 +227,9 @@ void SetupTriangles(const ScreenVertices& vertices, const PatchTriangles& triang
     const VF f2a = hn::ConvertTo(df, e2.a);
     const VF f1b = hn::ConvertTo(df, e1.b);
     const VF f2b = hn::ConvertTo(df, e2.b);
-    const VF z0 = hn::GatherIndex(df, vertices.depth, i0);
-    const VF z1 = hn::GatherIndex(df, vertices.depth, i1);
-    const VF z2 = hn::GatherIndex(df, vertices.depth, i2);
+    const VF z0 = Gather(vertices.depth, i0);
+    const VF z1 = Gather(vertices.depth, i1);
+    const VF z2 = Gather(vertices.depth, i2);
     const VF d1 = hn::Sub(z1, z0);
     const VF d2 = hn::Sub(z2, z0);
     const VF inv_area_px = hn::Mul(inv_area, subpixels);
@@ -236,9 +238,9 @@ void SetupTriangles(const ScreenVertices& vertices, const PatchTriangles& triang
     hn::Store(hn::Mul(hn::Add(hn::Mul(f1b, d1), hn::Mul(f2b, d2)), inv_area_px), df, out.dzdy);
     hn::Store(hn::Min(hn::Min(z0, z1), z2), df, out.lo);
     hn::Store(hn::Max(hn::Max(z0, z1), z2), df, out.hi);
-    const VF s0 = hn::Mul(inv_area, hn::GatherIndex(df, vertices.inv_w, i0));
-    const VF s1 = hn::Mul(inv_area, hn::GatherIndex(df, vertices.inv_w, i1));
-    const VF s2 = hn::Mul(inv_area, hn::GatherIndex(df, vertices.inv_w, i2));
+    const VF s0 = hn::Mul(inv_area, Gather(vertices.inv_w, i0));
+    const VF s1 = hn::Mul(inv_area, Gather(vertices.inv_w, i1));
+    const VF s2 = hn::Mul(inv_area, Gather(vertices.inv_w, i2));
     const VF s0_px = hn::Mul(s0, subpixels);
     const VF s1_px = hn::Mul(s1, subpixels);
     const VF s2_px = hn::Mul(s2, subpixels);

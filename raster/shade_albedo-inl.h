@@ -36,8 +36,8 @@ HWY_INLINE void MultiplyByVertexColor(const std::array<const std::uint32_t*, 2>&
   VF sum_g = hn::Zero(d);
   VF sum_b = hn::Zero(d);
   for (int corner = 0; corner < 3; ++corner) {
-    const VI rg = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(color[0]), at.vertex(corner));
-    const VI ba = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(color[1]), at.vertex(corner));
+    const VI rg = hn::BitCast(di, Gather(color[0], at.vertex(corner)));
+    const VI ba = hn::BitCast(di, Gather(color[1], at.vertex(corner)));
     const VF weight = hn::Mul(at.barycentric(corner), Constant(1.0F / 65535.0F));
     const VI green = hn::BitCast(di, hn::ShiftRight<16>(hn::BitCast(DU(), rg)));
     sum_r = hn::Add(sum_r, hn::Mul(weight, hn::ConvertTo(d, hn::And(rg, hn::Set(di, 0xFFFF)))));
@@ -52,10 +52,9 @@ HWY_INLINE void MultiplyByVertexColor(const std::array<const std::uint32_t*, 2>&
 /// A texture coordinate of the mesh and its derivatives by x and y in the frame, from the planes of screen.h:
 /// d(sum b_i t_i) = (sum du_i t_i - t sum du_i) / sum u, where du_i / sum u is along_x or along_y.
 HWY_INLINE void InterpolateWithSlopes(const float* coordinate, const Fragments& at, VF& value, VF& by_x, VF& by_y) {
-  const DF d;
-  const VF t0 = hn::GatherIndex(d, coordinate, at.vertex(0));
-  const VF t1 = hn::GatherIndex(d, coordinate, at.vertex(1));
-  const VF t2 = hn::GatherIndex(d, coordinate, at.vertex(2));
+  const VF t0 = Gather(coordinate, at.vertex(0));
+  const VF t1 = Gather(coordinate, at.vertex(1));
+  const VF t2 = Gather(coordinate, at.vertex(2));
   value = Interpolate(at, t0, t1, t2);
   // With t_i - t in place of t_i the second sum is part of the first, and large coordinates cancel early.
   const VF d0 = hn::Sub(t0, value);
@@ -95,11 +94,10 @@ HWY_INLINE void MultiplyByTexture(const Surface& surface, const ShadeMaterial& m
 
 HWY_INLINE void MultiplyBySolid(const Surface& surface, const ShadeMaterial& material, const Fragments& at, VF& r,
                                 VF& g, VF& b) {
-  const DF d;
   const auto coordinate = [&](std::size_t axis) HWY_ATTR {
     const float* position = surface.position_object[axis];
-    const VF p = Interpolate(at, hn::GatherIndex(d, position, at.vertex(0)), hn::GatherIndex(d, position, at.vertex(1)),
-                             hn::GatherIndex(d, position, at.vertex(2)));
+    const VF p =
+        Interpolate(at, Gather(position, at.vertex(0)), Gather(position, at.vertex(1)), Gather(position, at.vertex(2)));
     return hn::Mul(p, Constant(material.solid_frequency));
   };
   const VF share = SolidShare(material.solid, coordinate(0), coordinate(1), coordinate(2));

@@ -40,10 +40,10 @@ struct BlockFragments {
   std::uint32_t uniform[kBlockPixels];
 };
 
-/// The unit normals of the corners of the triangle that was last seen to fill a vector, as most large ones do again.
+/// UnpackDirections() of the corners of the triangle that last filled a vector, as most large ones do again.
 struct CornerNormals {
   std::uint32_t triangle = kNoTriangle;
-  float corner[3][3];
+  float corner[3][4];  ///< qx, qy, qz, scale
 };
 
 HWY_INLINE std::uint64_t AllLanes() {
@@ -53,13 +53,11 @@ HWY_INLINE std::uint64_t AllLanes() {
 #if HWY_TARGET == HWY_SCALAR || HWY_HAVE_SCALABLE
 
 HWY_INLINE void LoadFourWords(const std::uint32_t* words, const std::uint32_t* ids, VU& a, VU& b, VU& c, VU& d) {
-  const DI di;
-  const auto* base = reinterpret_cast<const std::int32_t*>(words);
-  const VI first = hn::BitCast(di, hn::ShiftLeft<4>(hn::Load(DU(), ids)));
-  a = hn::BitCast(DU(), hn::GatherIndex(di, base, first));
-  b = hn::BitCast(DU(), hn::GatherIndex(di, base + 1, first));
-  c = hn::BitCast(DU(), hn::GatherIndex(di, base + 2, first));
-  d = hn::BitCast(DU(), hn::GatherIndex(di, base + 3, first));
+  const VI first = hn::BitCast(DI(), hn::ShiftLeft<4>(hn::Load(DU(), ids)));
+  a = Gather(words, first);
+  b = Gather(words + 1, first);
+  c = Gather(words + 2, first);
+  d = Gather(words + 3, first);
 }
 
 #else
@@ -76,7 +74,7 @@ HWY_INLINE hn::Vec<D> LoadQuads(D d, const std::uint32_t* words, const std::uint
 }
 
 /// Words 0 to 3 of each lane's record. A record is one cache line, so that a quarter of it is loaded whole and
-/// transposed: gathers, one per word and lane, take about three times as long.
+/// transposed: a quarter as many loads as gathers need, which read one word at a time.
 HWY_INLINE void LoadFourWords(const std::uint32_t* words, const std::uint32_t* ids, VU& a, VU& b, VU& c, VU& d) {
   const DU du;
   const hn::Repartition<std::uint64_t, DU> d64;
@@ -205,10 +203,9 @@ HWY_INLINE std::uint64_t FetchFragments(const ShadeTriangle* triangles, const st
   return all_mine;
 }
 
-/// Object-space normals of all vectors, interpolated between the corners' unit normals.
+/// Object-space normals of all vectors, interpolated between the corners' normals of equal length.
 HWY_INLINE void FetchSmoothNormals(const std::uint32_t* normals, BlockFragments& fragments, CornerNormals& last) {
   const DF d;
-  const auto* packed_normals = reinterpret_cast<const std::int32_t*>(normals);
   for (std::size_t begin = 0; begin < kBlockPixels; begin += hn::Lanes(d)) {
     if (fragments.lanes[begin] == 0) continue;
     const std::uint32_t uniform = fragments.uniform[begin];
@@ -217,24 +214,27 @@ HWY_INLINE void FetchSmoothNormals(const std::uint32_t* normals, BlockFragments&
     VF ny = hn::Zero(d);
     VF nz = hn::Zero(d);
     for (int corner = 0; corner < 3; ++corner) {
-      VF x, y, z;
+      VF x, y, z, scale;
+      float* kept = last.corner[corner];
       if (known) {
-        x = Constant(last.corner[corner][0]);
-        y = Constant(last.corner[corner][1]);
-        z = Constant(last.corner[corner][2]);
+        x = Constant(kept[0]);
+        y = Constant(kept[1]);
+        z = Constant(kept[2]);
+        scale = Constant(kept[3]);
       } else {
-        const VI packed = hn::GatherIndex(DI(), packed_normals, hn::Load(DI(), fragments.vertex[corner] + begin));
-        UnpackNormals(hn::BitCast(DU(), packed), x, y, z);
+        const VU packed = Gather(normals, hn::Load(DI(), fragments.vertex[corner] + begin));
+        UnpackDirections(packed, x, y, z, scale);
         if (uniform != kNoTriangle) {
-          last.corner[corner][0] = hn::GetLane(x);
-          last.corner[corner][1] = hn::GetLane(y);
-          last.corner[corner][2] = hn::GetLane(z);
+          kept[0] = hn::GetLane(x);
+          kept[1] = hn::GetLane(y);
+          kept[2] = hn::GetLane(z);
+          kept[3] = hn::GetLane(scale);
         }
       }
-      const VF weight = hn::Load(d, fragments.barycentric[corner] + begin);
-      nx = hn::Add(nx, hn::Mul(weight, x));
-      ny = hn::Add(ny, hn::Mul(weight, y));
-      nz = hn::Add(nz, hn::Mul(weight, z));
+      const VF weight = hn::Mul(hn::Load(d, fragments.barycentric[corner] + begin), scale);
+      nx = corner == 0 ? hn::Mul(weight, x) : hn::Add(nx, hn::Mul(weight, x));
+      ny = corner == 0 ? hn::Mul(weight, y) : hn::Add(ny, hn::Mul(weight, y));
+      nz = corner == 0 ? hn::Mul(weight, z) : hn::Add(nz, hn::Mul(weight, z));
     }
     if (uniform != kNoTriangle) last.triangle = uniform;
     hn::Store(nx, d, fragments.normal[0] + begin);
@@ -251,15 +251,15 @@ HWY_INLINE void FetchFlatNormals(const std::array<const float*, 3>& position, Bl
     const VI v0 = hn::Load(DI(), fragments.vertex[0] + begin);
     const VI v1 = hn::Load(DI(), fragments.vertex[1] + begin);
     const VI v2 = hn::Load(DI(), fragments.vertex[2] + begin);
-    const VF x0 = hn::GatherIndex(d, position[0], v0);
-    const VF y0 = hn::GatherIndex(d, position[1], v0);
-    const VF z0 = hn::GatherIndex(d, position[2], v0);
-    const VF ax = hn::Sub(hn::GatherIndex(d, position[0], v1), x0);
-    const VF ay = hn::Sub(hn::GatherIndex(d, position[1], v1), y0);
-    const VF az = hn::Sub(hn::GatherIndex(d, position[2], v1), z0);
-    const VF bx = hn::Sub(hn::GatherIndex(d, position[0], v2), x0);
-    const VF by = hn::Sub(hn::GatherIndex(d, position[1], v2), y0);
-    const VF bz = hn::Sub(hn::GatherIndex(d, position[2], v2), z0);
+    const VF x0 = Gather(position[0], v0);
+    const VF y0 = Gather(position[1], v0);
+    const VF z0 = Gather(position[2], v0);
+    const VF ax = hn::Sub(Gather(position[0], v1), x0);
+    const VF ay = hn::Sub(Gather(position[1], v1), y0);
+    const VF az = hn::Sub(Gather(position[2], v1), z0);
+    const VF bx = hn::Sub(Gather(position[0], v2), x0);
+    const VF by = hn::Sub(Gather(position[1], v2), y0);
+    const VF bz = hn::Sub(Gather(position[2], v2), z0);
     hn::Store(hn::Sub(hn::Mul(ay, bz), hn::Mul(az, by)), d, fragments.normal[0] + begin);
     hn::Store(hn::Sub(hn::Mul(az, bx), hn::Mul(ax, bz)), d, fragments.normal[1] + begin);
     hn::Store(hn::Sub(hn::Mul(ax, by), hn::Mul(ay, bx)), d, fragments.normal[2] + begin);

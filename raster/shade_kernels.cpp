@@ -141,7 +141,7 @@ HWY_INLINE void StoreColors(std::uint64_t lanes, VF r, VF g, VF b, Block& block,
   float* to_r = block.colors.r + begin;
   float* to_g = block.colors.g + begin;
   float* to_b = block.colors.b + begin;
-  // Not for the sake of the other lanes only: what a masked store wrote cannot be forwarded to the load that encodes.
+  // A plain store where it may be: one that is masked cannot be forwarded to the load that encodes.
   if (lanes == (block.covered >> begin & AllLanes())) {
     hn::Store(Presentable(r), d, to_r);
     hn::Store(Presentable(g), d, to_g);

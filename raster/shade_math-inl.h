@@ -6,6 +6,8 @@
 
 #include <hwy/highway.h>
 
+#include "raster/gather-inl.h"
+
 #if defined(SHEAF_RASTER_SHADE_MATH_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHEAF_RASTER_SHADE_MATH_INL_H_
 #undef SHEAF_RASTER_SHADE_MATH_INL_H_
@@ -30,6 +32,10 @@ inline constexpr std::size_t kMaxLanes = 16;
 
 HWY_INLINE VF Constant(float value) {
   return hn::Set(DF(), value);
+}
+
+HWY_INLINE VU Gather(const std::uint32_t* base, VI index) {
+  return hn::BitCast(DU(), Gather(reinterpret_cast<const std::int32_t*>(base), index));
 }
 
 HWY_INLINE VF Dot(VF ax, VF ay, VF az, VF bx, VF by, VF bz) {

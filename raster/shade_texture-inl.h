@@ -44,8 +44,8 @@ HWY_INLINE void ReadTexels(const MipTexture& texture, VI texel, VF& r, VF& g, VF
   const auto* words = reinterpret_cast<const std::int32_t*>(texture.texels().data());
   const VI low16 = hn::Set(di, 0xFFFF);
   const VI rg_word = hn::Add(texel, texel);
-  const VI rg = hn::GatherIndex(di, words, rg_word);
-  const VI ba = hn::GatherIndex(di, words + 1, rg_word);
+  const VI rg = Gather(words, rg_word);
+  const VI ba = Gather(words + 1, rg_word);
   r = hn::ConvertTo(d, hn::And(rg, low16));
   g = hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<16>(hn::BitCast(DU(), rg))));
   b = hn::ConvertTo(d, hn::And(ba, low16));
@@ -65,9 +65,9 @@ HWY_INLINE void LoadLevels(const MipTexture& texture, VI level, VI& width, VI& h
   static_assert(sizeof(MipTexture::Level) == 3 * sizeof(std::int32_t));
   const std::int32_t* fields = &texture.level(0).width;
   const VI word = hn::Add(hn::Add(level, level), level);
-  width = hn::GatherIndex(di, fields, word);
-  height = hn::GatherIndex(di, fields + 1, word);
-  first_texel = hn::GatherIndex(di, fields + 2, word);
+  width = Gather(fields, word);
+  height = Gather(fields + 1, word);
+  first_texel = Gather(fields + 2, word);
 }
 
 /// Bilinear at (u, v), both wrapped, in units of 1 / 65535.

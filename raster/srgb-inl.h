@@ -19,7 +19,7 @@ HWY_INLINE VI EncodeSrgb(const std::uint32_t* table, VF linear) {
   const VF highest = hn::BitCast(DF(), hn::Set(di, static_cast<std::int32_t>(kSrgbEncodeLastBits)));
   const VF raised = hn::IfThenElse(hn::Gt(linear, lowest), linear, lowest);
   const VI bits = hn::Sub(hn::BitCast(di, hn::Min(raised, highest)), hn::BitCast(di, lowest));
-  const VI entry = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(table), hn::ShiftRight<16>(bits));
+  const VI entry = hn::BitCast(di, Gather(table, hn::ShiftRight<16>(bits)));
   return hn::ShiftRight<16>(hn::Add(entry, hn::And(bits, hn::Set(di, 0xFFFF))));
 }
 

@@ -22,7 +22,7 @@ std::array<std::uint32_t, kSrgbEncodeBuckets> makeEncodeTable() {
   std::uint32_t next_bits = firstFloatBits(1);
   for (std::uint32_t bucket = 0; bucket < kSrgbEncodeBuckets; ++bucket) {
     const std::uint32_t begin_bits = kSrgbEncodeFirstBits + (bucket << 16);
-    assert(next_bits >= begin_bits);
+    assert(code == 255 || next_bits >= begin_bits);
     table[bucket] = code << 16;
     if (code == 255 || next_bits - begin_bits > 0xFFFFU) continue;
     table[bucket] += 0x10000U - (next_bits - begin_bits);

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <bit>
-#include <type_traits>
 
 #include "raster/edges.h"
 #include "raster/tile.h"
@@ -25,12 +24,18 @@ using VF = hn::Vec<decltype(df)>;
 struct BlockOffsets {
   alignas(64) float column[kBlockPixels];
   alignas(64) float row[kBlockPixels];
+  alignas(64) std::int32_t lane_column[kMaxLanes];  // of the first vector
+  alignas(64) std::int32_t lane_row[kMaxLanes];
 };
 constexpr BlockOffsets MakeBlockOffsets() {
   BlockOffsets offsets{};
   for (int p = 0; p < kBlockPixels; ++p) {
     offsets.column[p] = static_cast<float>(p % kBlockSize);
     offsets.row[p] = static_cast<float>(p / kBlockSize);
+  }
+  for (int lane = 0; lane < static_cast<int>(kMaxLanes); ++lane) {
+    offsets.lane_column[lane] = lane % kBlockSize;
+    offsets.lane_row[lane] = lane / kBlockSize;
   }
   return offsets;
 }
@@ -172,9 +177,9 @@ HWY_INLINE VF WriteVector(VF z, M covered, std::uint32_t index, int p, TileState
 
 // Change of an edge from the first pixel of a vector to its others: the same for every vector of a block.
 HWY_INLINE VI EdgeLanes(std::int32_t a, std::int32_t b) {
-  const VI lane = hn::Iota(di, 0);
-  const VI column = hn::And(lane, hn::Set(di, kBlockSize - 1));
-  const VI row = hn::ShiftRight<3>(lane);
+  // hn::Iota goes through memory, lane by lane: too slow here.
+  const VI column = hn::Load(di, kBlockOffsets.lane_column);
+  const VI row = hn::Load(di, kBlockOffsets.lane_row);
   return hn::Add(hn::Mul(hn::Set(di, a), column), hn::Mul(hn::Set(di, b), row));
 }
 
@@ -231,15 +236,14 @@ HWY_INLINE VF DrawPixels(const TriangleInTile& in, const BlockPixels& pixels, Ti
   return deepest;
 }
 
-// Triangles within a few blocks: every vector under the box is tested against all crossing edges.
-template <int N>
+// Triangles within a few blocks: every vector under the box is tested against all edges.
 void DrawMedium(const TriangleInTile& in, const TileBox& box, TileState& state) {
   const auto lanes = static_cast<int>(hn::Lanes(di));
   for (int y = box.y_min & ~7; y <= box.y_max; y += kBlockSize) {
     const int begin = (std::max(box.y_min - y, 0) * kBlockSize) & ~(lanes - 1);
     const int end = (std::min(box.y_max - y, kBlockSize - 1) + 1) * kBlockSize;
     for (int x = box.x_min & ~7; x <= box.x_max; x += kBlockSize)
-      if (!(in.triangle.depth.hi < state.farthest[y + x / kBlockSize])) DrawPixels<N>(in, {x, y, begin, end}, state);
+      if (!(in.triangle.depth.hi < state.farthest[y + x / kBlockSize])) DrawPixels<3>(in, {x, y, begin, end}, state);
   }
 }
 
@@ -258,26 +262,51 @@ void DrawBig(const TriangleInTile& in, const TileBox& box, TileState& state) {
   }
 }
 
-constexpr int kMediumSize = 24;  // pixels per side; beyond, sorting out blocks pays
+// Below 32 pixels per side every vector is tested; beyond, sorting out blocks pays.
+constexpr std::int32_t kMediumExtent = 32 * kSubpixels;
+
+// By its edges, not by its pixels: those may be few because the target ends there.
+bool IsMedium(const LargeTriangle& triangle) {
+  static_assert(std::has_single_bit(static_cast<unsigned>(kMediumExtent)));
+  std::uint32_t beyond = 0;
+  for (const PixelEdge& edge : triangle.edges)
+    beyond |= static_cast<std::uint32_t>(edge.a + kMediumExtent) | static_cast<std::uint32_t>(edge.b + kMediumExtent);
+  return beyond < 2 * kMediumExtent;
+}
+
+// Edges of a triangle of medium size: 32 bits are enough anywhere in a tile that it touches.
+TileEdges EdgesOfMedium(const LargeTriangle& triangle, int x0, int y0) {
+  TileEdges edges;
+  edges.count = 3;
+  for (int i = 0; i < 3; ++i) {
+    const PixelEdge& edge = triangle.edges[i];
+    edges.a[i] = edge.a;
+    edges.b[i] = edge.b;
+    edges.c[i] = static_cast<std::int32_t>(edge.c) + edge.a * (x0 - triangle.ref_x) + edge.b * (y0 - triangle.ref_y);
+  }
+  return edges;
+}
 
 void DrawLarge(const LargeTriangle& triangle, int x0, int y0, TileState& state) {
+  const TileBox box = BoxInTile(triangle, x0, y0);
+  const int x_from_ref = x0 - triangle.ref_x;
+  const int y_from_ref = y0 - triangle.ref_y;
+  if (IsMedium(triangle)) {
+    DrawMedium({triangle, EdgesOfMedium(triangle, x0, y0), x_from_ref, y_from_ref}, box, state);
+    return;
+  }
   TileEdges edges;
   if (!EdgesInTile(triangle, x0, y0, edges)) return;
-  const TileBox box = BoxInTile(triangle, x0, y0);
-  const TriangleInTile in{triangle, edges, x0 - triangle.ref_x, y0 - triangle.ref_y};
-  const bool medium = box.x_max - box.x_min < kMediumSize && box.y_max - box.y_min < kMediumSize;
-  const auto draw = [&]<int N>(std::integral_constant<int, N>) {
-    medium ? DrawMedium<N>(in, box, state) : DrawBig<N>(in, box, state);
-  };
+  const TriangleInTile in{triangle, edges, x_from_ref, y_from_ref};
   switch (edges.count) {
     case 0:
-      return draw(std::integral_constant<int, 0>{});
+      return DrawBig<0>(in, box, state);
     case 1:
-      return draw(std::integral_constant<int, 1>{});
+      return DrawBig<1>(in, box, state);
     case 2:
-      return draw(std::integral_constant<int, 2>{});
+      return DrawBig<2>(in, box, state);
     default:
-      return draw(std::integral_constant<int, 3>{});
+      return DrawBig<3>(in, box, state);
   }
 }
 

@@ -84,7 +84,7 @@ Material solid(const std::string& name, Solid kind, const Vec3& first, const Vec
 }
 
 Material whiteMarble() {
-  return solid("white marble", Solid::kMarble, Vec3(0.82F, 0.80F, 0.76F), Vec3(0.34F, 0.35F, 0.38F), 1.6F);
+  return solid("white marble", Solid::kMarble, Vec3(0.82F, 0.80F, 0.76F), Vec3(0.17F, 0.18F, 0.21F), 1.0F);
 }
 
 // Shapes ----------------------------------------------------------------------------------------------------------
@@ -372,7 +372,7 @@ void addGlobe(Arrangement& a) {
   const DMat4 tilted(DVec4(std::cos(tilt), std::sin(tilt), 0.0, 0.0), DVec4(-std::sin(tilt), std::cos(tilt), 0.0, 0.0),
                      DVec4(0.0, 0.0, 1.0, 0.0), DVec4(0.0, 0.0, 0.0, 1.0));
   a.add(a.addMesh([](int detail) { return globeMesh(96 * detail, 48 * detail); }), a.addMaterial(globe),
-        placed(kX, 1.24, kZ, 0.84) * tilted * placed(0.0, 0.0, 0.0, 1.0, 2.2));
+        placed(kX, 1.24, kZ, 0.84) * tilted * placed(0.0, 0.0, 0.0, 1.0, 3.3));
   const std::uint32_t wood =
       a.addMaterial(solid("stand wood", Solid::kWood, Vec3(0.36F, 0.17F, 0.07F), Vec3(0.16F, 0.07F, 0.03F), 7.0F));
   a.add(a.addMesh(globeStand), wood, placed(kX, 0.0, kZ));
@@ -380,7 +380,7 @@ void addGlobe(Arrangement& a) {
 
 void addVase(Arrangement& a) {
   const std::uint32_t wood =
-      a.addMaterial(solid("vase wood", Solid::kWood, Vec3(0.62F, 0.38F, 0.17F), Vec3(0.30F, 0.14F, 0.05F), 6.0F));
+      a.addMaterial(solid("vase wood", Solid::kWood, Vec3(0.62F, 0.38F, 0.17F), Vec3(0.30F, 0.14F, 0.05F), 9.0F));
   a.add(a.addMesh(vase), wood, placed(2.75, 0.0, -1.65, 1.12));
 }
 

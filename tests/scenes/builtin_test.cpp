@@ -246,6 +246,12 @@ TEST_CASE("scenes/builtin: the same text gives the same scene") {
   }
 }
 
+TEST_CASE("scenes/builtin: scenes made by +, -, *, / and square roots alone are the same bytes everywhere") {
+  CHECK(hashOfScene(buildBuiltin("sphere?n=16")) == 0x222acd6fef6fb649ULL);
+  CHECK(hashOfScene(buildBuiltin("terrain?n=65&seed=3")) == 0xf05946e0184c8e29ULL);
+  CHECK(hashOfScene(buildBuiltin("fill?layers=9&order=shuffled")) == 0xf2c31fba03deee70ULL);
+}
+
 TEST_CASE("scenes/builtin: unknown names, parameters and values are refused with what exists") {
   const auto refusal = [](const std::string& spec) -> std::string {
     try {

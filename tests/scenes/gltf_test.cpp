@@ -392,6 +392,9 @@ TEST_CASE("scenes/gltf: refusals name the place and the reason") {
   CHECK(refusal("a.gltf", "{\"asset\": ").starts_with("a.gltf: JSON: parse error at line 1"));
   CHECK(refusal("a.gltf", "{\"asset\": {\"version\": \"2.0\"}, \"x\": " + std::string(100000, '[')) ==
         "a.gltf: JSON is nested too deeply");
+  Builder quoted = square();
+  quoted.root["asset"]["generator"] = "a \\\" " + std::string(1000, '[') + "\\";
+  CHECK(load(quoted).triangleCount() == 2);
   CHECK(refusal("a.glb", glb("{}", "").substr(0, 15)) == "a.glb: GLB: the file ends within its header");
 }
 

@@ -1,0 +1,117 @@
+// The geometry stage's kernels, culling, preparing, and whole frames of built-in scenes stage by stage.
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/task_pool.h"
+#include "pipeline/cull.h"
+#include "pipeline/prepare.h"
+#include "pipeline/renderer.h"
+#include "pipeline/transform.h"
+#include "scenes/builtin.h"
+#include "scenes/camera.h"
+
+namespace sheaf::pipeline {
+namespace {
+
+constexpr int kWidth = 1920;
+constexpr int kHeight = 1080;
+
+// 12 bytes read per vertex, the rest stays in the first-level cache: about 35 vector instructions per vector of
+// vertices, so that it is bound by instructions up to some 10 GB/s.
+void transformAndProject(benchmark::State& state) {
+  const auto patches = static_cast<std::size_t>(state.range(0));
+  const std::size_t vertices = patches * kMaxPatchVertices;
+  const std::vector<float> position(vertices, 0.25F);
+  Mat4 clip_from_object(1.0F);
+  clip_from_object[3] = {0.1F, 0.2F, 0.3F, 2.0F};
+  const Viewport viewport(kWidth, kHeight);
+  static ClipVertices clip;
+  static ProjectedVertices projected;
+  for (auto _ : state)
+    for (std::size_t p = 0; p < patches; ++p) {
+      const float* first = position.data() + p * kMaxPatchVertices;
+      transformVertices({first, first, first}, kMaxPatchVertices, clip_from_object, clip);
+      projectVertices(clip, kMaxPatchVertices, viewport, projected);
+      benchmark::DoNotOptimize(projected);
+    }
+  state.counters["vertices/s"] =
+      benchmark::Counter(static_cast<double>(vertices), benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(transformAndProject)->Name("pipeline/transform")->ArgName("patches")->Arg(16)->Arg(16384);
+
+struct Load {
+  const char* name;
+  const char* spec;
+  bool cull;
+};
+
+constexpr std::array<Load, 6> kLoads = {{{"sphere-1M", "sphere?n=289", true},
+                                         {"sphere-1M-classic", "sphere?n=289", false},
+                                         {"sphere-100k", "sphere?n=91", true},
+                                         {"terrain-2M", "terrain?n=1001", true},
+                                         {"city", "city?blocks=20", true},
+                                         {"gallery", "gallery", true}}};
+
+// Whole frames with the times of their stages (cpu, summed over threads) as counters.
+void drawFrame(benchmark::State& state, const Load& load, int threads) {
+  TaskPool pool(threads);
+  scenes::Scene scene = scenes::buildBuiltin(load.spec);
+  const double aspect = static_cast<double>(kWidth) / kHeight;
+  scenes::Camera camera = scene.cameras.empty()
+                              ? scenes::fitCamera(scene, scenes::namedView("iso"), aspect, radians(40.0), false)
+                              : scene.cameras.front();
+  camera = scenes::fitClipPlanes(camera, scenes::boundsOf(scene));
+  if (scene.lights.empty()) scenes::addDefaultLights(scene, camera);
+  const PreparedScene prepared = prepareScene(std::move(scene), pool);
+  Renderer renderer(pool);
+  RenderSettings settings;
+  settings.width = kWidth;
+  settings.height = kHeight;
+  settings.cull_patches = load.cull;
+  Frame frame;
+  renderer.render(prepared, camera, settings, frame);
+  StageTimes cpu;
+  for (auto _ : state) {
+    renderer.render(prepared, camera, settings, frame);
+    cpu += frame.cpu;
+  }
+  for (const Stage stage :
+       {Stage::kCull, Stage::kTransform, Stage::kClip, Stage::kSetupBin, Stage::kRaster, Stage::kShade})
+    state.counters[std::string(kStageNames[static_cast<std::size_t>(stage)]) + "_ms"] =
+        benchmark::Counter(static_cast<double>(cpu[stage]) / 1e6, benchmark::Counter::kAvgIterations);
+  state.counters["binned"] = static_cast<double>(frame.counters.triangles_binned);
+  state.counters["pixels"] = static_cast<double>(frame.counters.pixels_shaded);
+}
+
+// A mesh's way from plain arrays to patches.
+void prepare(benchmark::State& state) {
+  TaskPool pool(static_cast<int>(state.range(0)));
+  const scenes::Scene scene = scenes::buildBuiltin("sphere?n=289");
+  for (auto _ : state) benchmark::DoNotOptimize(prepareScene(scene, pool));
+  state.counters["triangles/s"] =
+      benchmark::Counter(static_cast<double>(scene.triangleCount()), benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(prepare)
+    ->Name("pipeline/prepare/sphere-1M")
+    ->ArgName("threads")
+    ->Arg(1)
+    ->Arg(2)
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+
+const int kRegistered = [] {
+  for (const Load& load : kLoads)
+    for (const int threads : {1, 2})
+      benchmark::RegisterBenchmark(
+          (std::string("pipeline/frame/") + load.name + "/threads:" + std::to_string(threads)).c_str(),
+          [&load, threads](benchmark::State& state) { drawFrame(state, load, threads); })
+          ->UseRealTime()
+          ->Unit(benchmark::kMillisecond);
+  return 0;
+}();
+
+}  // namespace
+}  // namespace sheaf::pipeline

@@ -1,7 +1,7 @@
-// The Cornell box [GTGB84], dimensions and colours after the measured data that Cornell University's Program of
-// Computer Graphics published; here ten times as large, with the opening towards +Z and the floor's middle near the
-// origin. The renderer has neither area lights nor reflected light, so both are computed here, once, into vertex
-// colours: radiosity on a coarse grid of patches.
+// The Cornell box (Goral, Torrance, Greenberg, Battaile, SIGGRAPH 1984), dimensions after the measured data that
+// Cornell University's Program of Computer Graphics published; here ten times as large, with the opening towards +Z and
+// the floor's middle near the origin. The renderer has neither area lights nor reflected light, so both are computed
+// here, once, into vertex colours: radiosity on a coarse grid of patches.
 #include "scenes/builtin_scenes.h"
 #include "scenes/shapes.h"
 

@@ -46,7 +46,8 @@ struct alignas(64) ShadeTriangle {
   float uy[3];
   std::int16_t ref_x;
   std::int16_t ref_y;
-  std::uint32_t vertex[3];  ///< into the surface's attribute arrays
+  std::uint32_t
+      vertex[3];  ///< into the surface's attribute arrays, in the mesh's order: counter-clockwise from the front
   std::uint32_t surface;    ///< into ShadeScene::surfaces
   std::uint32_t triangle;   ///< number of the triangle in its mesh
   std::uint32_t back_face;  ///< 1: seen from behind, its normal is turned round; 0: from the front

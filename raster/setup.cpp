@@ -100,7 +100,8 @@ void setupOne(const ScreenVertices& vertices, const PatchTriangles& triangles, s
     ++counts.no_sample;
     return;
   }
-  if (area < 0) {
+  const bool turned = area < 0;
+  if (turned) {
     std::swap(v[1], v[2]);
     std::swap(x[1], x[2]);
     std::swap(y[1], y[2]);
@@ -114,10 +115,11 @@ void setupOne(const ScreenVertices& vertices, const PatchTriangles& triangles, s
     for (int i = 0; i < 3; ++i) {
       const EdgeAtReference edge = edgeAtReference(x, y, i, box);
       const float scale = inv_area * vertices.inv_w[v[i]];
-      shade.u0[i] = edge.e * scale;
-      shade.ux[i] = edge.a * (scale * kSubpixels);
-      shade.uy[i] = edge.b * (scale * kSubpixels);
-      shade.vertex[i] = triangles.first_vertex + v[i];
+      const int corner = turned && i > 0 ? 3 - i : i;  // shading wants the mesh's own order
+      shade.u0[corner] = edge.e * scale;
+      shade.ux[corner] = edge.a * (scale * kSubpixels);
+      shade.uy[corner] = edge.b * (scale * kSubpixels);
+      shade.vertex[corner] = triangles.first_vertex + v[i];
     }
     shade.ref_x = static_cast<std::int16_t>(box.x_min);
     shade.ref_y = static_cast<std::int16_t>(box.y_min);

@@ -92,15 +92,17 @@ void StorePixelEdge(const EdgeLanes& edge, int i, LaneOutput& out) {
   hn::Store(hn::ShiftRight<kSubpixelBits>(hn::Add(edge.e, TopLeftBias(edge))), di, out.c[i]);
 }
 
-void EmitLane(const LaneOutput& out, int lane, bool small, bool back, std::uint32_t t, const PatchTriangles& triangles,
-              Binner& binner) {
+void EmitLane(const LaneOutput& out, int lane, bool small, bool turned, bool back, std::uint32_t t,
+              const PatchTriangles& triangles, Binner& binner) {
   const std::uint32_t index = binner.newShadeTriangle();
   ShadeTriangle& shade = binner.shadeTriangle(index);
+  // Shading wants the mesh's own order of corners.
+  const int from[3] = {0, turned ? 2 : 1, turned ? 1 : 2};
   for (int i = 0; i < 3; ++i) {
-    shade.u0[i] = out.u0[i][lane];
-    shade.ux[i] = out.ux[i][lane];
-    shade.uy[i] = out.uy[i][lane];
-    shade.vertex[i] = triangles.first_vertex + static_cast<std::uint32_t>(out.vertex[i][lane]);
+    shade.u0[i] = out.u0[from[i]][lane];
+    shade.ux[i] = out.ux[from[i]][lane];
+    shade.uy[i] = out.uy[from[i]][lane];
+    shade.vertex[i] = triangles.first_vertex + static_cast<std::uint32_t>(out.vertex[from[i]][lane]);
   }
   shade.ref_x = static_cast<std::int16_t>(out.x_min[lane]);
   shade.ref_y = static_cast<std::int16_t>(out.y_min[lane]);
@@ -268,8 +270,8 @@ void SetupTriangles(const ScreenVertices& vertices, const PatchTriangles& triang
 
     for (unsigned rest = alive; rest != 0; rest &= rest - 1) {
       const int lane = __builtin_ctz(rest);
-      EmitLane(out, lane, (small >> lane & 1U) != 0, (back >> lane & 1U) != 0, t + static_cast<std::uint32_t>(lane),
-               triangles, binner);
+      EmitLane(out, lane, (small >> lane & 1U) != 0, (negative_bits >> lane & 1U) != 0, (back >> lane & 1U) != 0,
+               t + static_cast<std::uint32_t>(lane), triangles, binner);
     }
   }
 }

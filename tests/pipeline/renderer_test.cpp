@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "raster/image_compare.h"
 #include "tests/pipeline/scene_fixture.h"
 #include "tests/simd_targets.h"
 
@@ -206,6 +207,38 @@ TEST_CASE("pipeline/renderer: a floor that passes under and behind the eye fills
               (y >= kHeight / 2 + 1 || (y == kHeight / 2 && frame.instance_id.at(x, y) == 0)));
     }
   }
+}
+
+TEST_CASE(
+    "pipeline/renderer: a flat surface is lit like a smooth one with the same normals, clipped and mirrored too") {
+  TaskPool pool(1);
+  const auto colorOf = [&](scenes::Shading shading, bool mirrored, double z, double near) {
+    scenes::Scene scene = squareScene();
+    scene.meshes[0].normals.assign(4, Vec3(0.0F, 0.0F, 1.0F));
+    scene.materials[0].shading = shading;
+    scene.materials[0].double_sided = true;
+    // Tilted, so that a near plane may cut it.
+    scene.instances[0].world_from_object =
+        DMat4(DVec4(mirrored ? -1.0 : 1.0, 0, 0, 0), DVec4(0, 0.8, 0.6, 0), DVec4(0, -0.6, 0.8, 0), DVec4(0, 0, 0, 1));
+    scene.lights.push_back({glm::normalize(Vec3(0.2F, 0.3F, 1.0F)), Vec3(0.9F)});
+    scene.ambient = {Vec3(0.05F), Vec3(0.02F)};
+    return draw(prepareScene(std::move(scene), pool), cameraAt({0, 0, z}, near), pool);
+  };
+  for (const bool mirrored : {false, true})
+    for (const double z : {4.0, -4.0})
+      for (const double near : {0.1, 4.0}) {
+        CAPTURE(mirrored);
+        CAPTURE(z);
+        CAPTURE(near);
+        const Frame smooth = colorOf(scenes::Shading::kSmooth, mirrored, z, near);
+        const Frame flat = colorOf(scenes::Shading::kFlat, mirrored, z, near);
+        CHECK(seenPixels(flat) > 500);
+        CHECK((smooth.counters.triangles_clipped > 0) == (near == 4.0));
+        CHECK(raster::compareImages(smooth.color, flat.color).max_error <= 1);
+        // Towards the light it is brighter than a side that only the hemisphere lights.
+        const Rgba8 middle = flat.color.at(kWidth / 2, kHeight / 2);
+        if (near == 0.1) CHECK((middle.r > 150) == (z > 0));
+      }
 }
 
 TEST_CASE("pipeline/renderer: a scene without triangles is background") {

@@ -79,12 +79,12 @@ void putChunk(const char* type, std::string_view data, const std::function<void(
   putBigEndian(head.data(), static_cast<std::uint32_t>(data.size()));
   std::memcpy(head.data() + 4, type, 4);
   uLong crc = crc32(0, head.data() + 4, 4);
-  // zlib takes a null pointer for "start anew".
+  // An empty piece may be a null pointer, which zlib takes for "start anew" and fwrite() must not be given.
   if (!data.empty()) crc = crc32(crc, reinterpret_cast<const Bytef*>(data.data()), static_cast<uInt>(data.size()));
   std::array<std::uint8_t, 4> tail;
   putBigEndian(tail.data(), static_cast<std::uint32_t>(crc));
   sink(bytesOf(head.data(), head.size()));
-  sink(data);
+  if (!data.empty()) sink(data);
   sink(bytesOf(tail.data(), tail.size()));
 }
 

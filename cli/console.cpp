@@ -34,7 +34,8 @@ void printLine(std::string_view head, int ansi_color, std::string_view text) {
 }  // namespace
 
 void writeStdout(std::string_view text) {
-  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+  const bool written =
+      (text.empty() || std::fwrite(text.data(), 1, text.size(), stdout) == text.size()) && std::fflush(stdout) == 0;
   if (!written)
     throw Error(ErrorCode::kBadInput, fmt::format("standard output: cannot be written: {}", std::strerror(errno)));
 }

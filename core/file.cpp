@@ -112,7 +112,7 @@ void writeFile(const fs::path& path, std::string_view bytes) {
   replaceFile(path, [&](const fs::path& temporary) {
     FilePtr file(std::fopen(temporary.c_str(), "wb"), &std::fclose);
     if (!file) fail(path, fmt::format("cannot be written: {}", std::strerror(errno)));
-    const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
+    const bool written = bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
     if (std::fclose(file.release()) != 0 || !written)
       fail(path, fmt::format("cannot be written: {}", std::strerror(errno)));
   });

@@ -18,29 +18,31 @@ class DirectionGrid {
     rows_ = flat ? 1 : columns_;
   }
 
-  struct Entry {
-    DVec3 along;
-    std::uint32_t index;
-  };
-
-  // Replaces the content. `index` of the entries is kept with them.
-  void fill(std::span<const Entry> entries) {
+  // Replaces the content. ends[i] is the vertex at the far end of lines[i].
+  void fill(std::span<const LineTest::Along> lines, std::span<const std::uint32_t> ends) {
     first_.assign(cellCount() + 1, 0);
     cell_of_.clear();
-    for (const Entry& e : entries) {
-      const std::uint32_t cell = cellOf(e.along);
+    for (const LineTest::Along& line : lines) {
+      const std::uint32_t cell = cellOf(line.direction);
       cell_of_.push_back(cell);
       ++first_[cell + 1];
     }
     for (std::size_t c = 0; c < cellCount(); ++c) first_[c + 1] += first_[c];
     next_.assign(first_.begin(), first_.end() - 1);
-    sorted_.resize(entries.size());
-    for (std::size_t i = 0; i < entries.size(); ++i) sorted_[next_[cell_of_[i]]++] = entries[i];
+    lines_.resize(lines.size());
+    ends_.resize(lines.size());
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const std::uint32_t place = next_[cell_of_[i]]++;
+      lines_[place] = lines[i];
+      ends_[place] = ends[i];
+    }
   }
 
-  std::span<const Entry> sorted() const { return sorted_; }
+  // By cell.
+  std::span<const LineTest::Along> lines() const { return lines_; }
+  std::span<const std::uint32_t> ends() const { return ends_; }
 
-  // Calls body(begin, end) for runs of sorted() that hold all directions of lines through the origin that come within
+  // Calls body(begin, end) for runs of lines() that hold all directions of lines through the origin that come within
   // `reach` of the point `to`, and some others.
   template <class Body>
   void forEachNear(const DVec3& to, double reach, const Body& body) const {
@@ -98,8 +100,8 @@ class DirectionGrid {
   }
 
   int columns_ = 1, rows_ = 1;
-  std::vector<std::uint32_t> first_, next_, cell_of_;
-  std::vector<Entry> sorted_;
+  std::vector<std::uint32_t> first_, next_, cell_of_, ends_;
+  std::vector<LineTest::Along> lines_;
 };
 
 }  // namespace
@@ -109,28 +111,32 @@ std::vector<std::uint16_t> countTakenByLines(const LineTest& test, std::span<con
   const auto m = static_cast<std::uint32_t>(cell.size());
   std::vector<std::uint16_t> counts(std::size_t{m} * (m - (m > 0)) / 2, 0);
   DirectionGrid grid(m, flat);
-  std::vector<DirectionGrid::Entry> lines;
-  std::vector<std::uint32_t> taken;
+  std::vector<LineTest::Along> lines;
+  std::vector<std::uint32_t> ends, taken;
   std::size_t row = 0;  // of the pairs (first, first + 1) ...
   for (std::uint32_t first = 0; first < m; row += m - 1 - first, ++first) {
     if (!proceed(first)) return {};
     const DVec3 origin = test.position(cell[first]);
     lines.clear();
-    for (std::uint32_t j = first + 1; j < m; ++j)
-      if (test.isLine(cell[first], cell[j])) lines.push_back({test.position(cell[j]) - origin, j});
-    grid.fill(lines);
-    const std::span<const DirectionGrid::Entry> sorted = grid.sorted();
-    taken.assign(sorted.size(), 0);
+    ends.clear();
+    for (std::uint32_t j = first + 1; j < m; ++j) {
+      if (!test.isLine(cell[first], cell[j])) continue;
+      const DVec3 along = test.position(cell[j]) - origin;
+      lines.push_back({along, glm::dot(along, along)});
+      ends.push_back(j);
+    }
+    grid.fill(lines, ends);
+    taken.assign(lines.size(), 0);
     for (std::uint32_t p = 0; p < m; ++p) {
       if (p == first) continue;
       const DVec3 to_p = test.position(cell[p]) - origin;
       grid.forEachNear(to_p, test.reach(cell[p]), [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t k = begin; k < end; ++k) taken[k] += test.takes(cell[p], to_p, sorted[k].along) ? 1U : 0U;
+        test.addTakers(cell[p], to_p, grid.lines().subspan(begin, end - begin), taken.data() + begin);
       });
     }
     // The far end of each line has been counted with the others: it lies on its line exactly.
-    for (std::size_t k = 0; k < sorted.size(); ++k)
-      counts[row + sorted[k].index - first - 1] = static_cast<std::uint16_t>(taken[k] - 1);
+    for (std::size_t k = 0; k < taken.size(); ++k)
+      counts[row + grid.ends()[k] - first - 1] = static_cast<std::uint16_t>(taken[k] - 1);
   }
   return counts;
 }

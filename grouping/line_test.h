@@ -51,6 +51,26 @@ class LineTest {
     return t >= 0.0 && t <= ll;
   }
 
+  /// V2 - V1 of a line, and its square.
+  struct Along {
+    DVec3 direction;
+    double length2;
+  };
+
+  /// Adds 1 to the counts of the lines from one V1 that take p; to_p = p - V1.
+  void addTakers(std::uint32_t p, const DVec3& to_p, std::span<const Along> lines, std::uint32_t* counts) const {
+    if (!whiten_.empty() || segment_only_) {
+      for (std::size_t k = 0; k < lines.size(); ++k) counts[k] += takes(p, to_p, lines[k].direction) ? 1U : 0U;
+      return;
+    }
+    // The commonest case without branches; the same arithmetic as in takes().
+    const double limit = eps_ * eps_;
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+      const DVec3 across = glm::cross(to_p, lines[k].direction);
+      counts[k] += glm::dot(across, across) <= limit * lines[k].length2 ? 1U : 0U;
+    }
+  }
+
  private:
   // Lower triangular W with W'W = inverse(R); then the ellipsoid is |W x|^2 <= limit = 1. A vertex that cannot move has
   // W = I and limit 0: it is taken by lines through it.

@@ -15,9 +15,9 @@
 namespace sheaf::grouping {
 
 /// For slabs of one width: a run of the sorted projections. Dead vertices in it are passed over one by one, which is
-/// cheap for this search: after the planes of a vertex have been used, every live vertex is more than a half-width away
-/// from them, so the planes used along one axis lie more than a half-width apart and no run element is seen by more
-/// than two of them.
+/// cheap for this search: after the planes of a vertex have been used, every other live vertex is more than a
+/// half-width away from them, so the planes used along one axis lie more than a half-width apart and no run element is
+/// seen by more than two of them.
 class RunQuery {
  public:
   explicit RunQuery(const Slabs& slabs) : slabs_(slabs) {}

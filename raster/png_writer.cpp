@@ -147,7 +147,7 @@ void writePng(const std::filesystem::path& path, const Image8& image, TaskPool& 
     std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(temporary.c_str(), "wb"), &std::fclose);
     if (!file) fail();
     encodePng(image, pool, [&](std::string_view bytes) {
-      if (std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) fail();
+      if (!bytes.empty() && std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) fail();
     });
     if (std::fclose(file.release()) != 0) fail();
   });

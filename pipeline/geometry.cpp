@@ -94,6 +94,7 @@ void drawPatch(const PreparedMesh& mesh, const grouping::Patch& patch, const Ins
   triangles.surface = surface;
   triangles.facing = facing;
   worker.counters.vertices_transformed += patch.vertex_count;
+  worker.counters.vertices_full += patch.vertex_count;
   worker.counters.triangles_assembled += patch.triangle_count;
 
   worker.clock.then(Stage::kTransform);
@@ -103,6 +104,7 @@ void drawPatch(const PreparedMesh& mesh, const grouping::Patch& patch, const Ins
   raster::SetupCounts counts;
   if (!inside) {
     worker.clock.then(Stage::kClip);
+    worker.counters.vertices_coded += patch.vertex_count;
     const OutcodeSummary summary = outcodeVertices(worker.clip, patch.vertex_count, viewport, worker.codes.data());
     if (summary.any != 0) {
       ClassifiedTriangles& classified = worker.classified;

@@ -4,6 +4,9 @@
 
 #include <utility>
 
+#include "grouping/linear_groups.h"
+#include "grouping/planar_groups.h"
+
 namespace sheaf::pipeline {
 namespace {
 
@@ -84,6 +87,21 @@ void gatherAttributes(const mesh::Mesh& mesh, const grouping::PatchSet& set, std
   }
 }
 
+grouping::VertexGroups findGroups(const mesh::Mesh& mesh, const GroupingOptions& options) {
+  if (options.method == Grouping::kLinear) {
+    grouping::LinearOptions linear;
+    linear.epsilon = options.epsilon;
+    linear.metric = options.metric;
+    linear.limit = options.limit;
+    return groupLinear(mesh, linear);
+  }
+  grouping::PlanarOptions planar;
+  planar.epsilon = options.epsilon;
+  planar.metric = options.metric;
+  planar.limit = options.limit;
+  return groupPlanar(mesh, planar);
+}
+
 PreparedMesh prepareMesh(const mesh::Mesh& mesh, TaskPool& pool) {
   grouping::PatchSet set = grouping::splitIntoPatches(mesh, {}, pool);
   PreparedMesh out;
@@ -123,11 +141,28 @@ std::uint64_t PreparedMesh::bytes() const {
   return sum;
 }
 
-PreparedScene prepareScene(scenes::Scene scene, TaskPool& pool) {
+std::uint64_t PreparedMesh::vertexBytes() const {
+  std::uint64_t sum = 0;
+  for (const auto& p : position) sum += bytesOf(p);
+  return sum;
+}
+
+PreparedScene prepareScene(scenes::Scene scene, TaskPool& pool, const GroupingOptions& grouping) {
   PreparedScene out;
   out.meshes.reserve(scene.meshes.size());
   for (mesh::Mesh& mesh : scene.meshes) {
+    grouping::GroupingStats stats;
+    double extent = mesh::boundsOf(mesh).longestEdge();
+    if (grouping.method != Grouping::kNone) {
+      grouping::VertexGroups groups = findGroups(mesh, grouping);
+      mesh.positions = std::move(groups.positions);
+      stats = groups.stats;
+      extent = groups.extent;
+      out.warnings.insert(out.warnings.end(), groups.warnings.begin(), groups.warnings.end());
+    }
     out.meshes.push_back(prepareMesh(mesh, pool));
+    out.meshes.back().grouping = stats;
+    out.meshes.back().extent = extent;
     mesh = {};
   }
   out.textures.reserve(scene.textures.size());

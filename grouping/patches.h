@@ -53,4 +53,7 @@ struct PatchLimits {
 /// normals end up together. Triangles that use a vertex twice are left out.
 PatchSet splitIntoPatches(const mesh::Mesh& mesh, const PatchLimits& limits, TaskPool& pool);
 
+/// Bounds and cones again, after the mesh's vertices have moved.
+void renewBounds(const mesh::Mesh& mesh, PatchSet& set, TaskPool& pool);
+
 }  // namespace sheaf::grouping

@@ -452,12 +452,6 @@ void renewBounds(const Mesh& mesh, PatchSet& set, TaskPool& pool) {
     patch.bounds = {};
     for (std::uint32_t i = 0; i < patch.vertex_count; ++i)
       patch.bounds.extend(mesh.positions[set.vertex_source[patch.first_vertex + i]]);
-    std::vector<DVec3> normals;
-    for (std::uint32_t i = 0; i < patch.triangle_count; ++i) {
-      const DVec3 n = unitNormalOf(mesh, mesh.triangles[set.triangle_source[patch.first_triangle + i]]);
-      if (n != DVec3(0.0)) normals.push_back(n);
-    }
-    patch.cone = coneOf(normals);
   });
 }
 

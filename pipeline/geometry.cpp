@@ -55,9 +55,7 @@ class PatchDrawer {
   // Nothing needs clipping, and nothing is worth rejecting.
   void drawWhole() {
     worker_.clock.then(Stage::kTransform);
-    transformPatch(mesh_.vertices, at_, view_.clip_from_object, worker_.clip);
-    projectVertices(worker_.clip, 0, patch_.vertex_count, viewport_, worker_.projected);
-    for (const grouping::VertexRun& run : runs()) countTransformed(run, run.vertex_count);
+    transformWhole();
     worker_.clock.then(Stage::kSetupBin);
     setUp(0, patch_.triangle_count);
   }
@@ -66,6 +64,7 @@ class PatchDrawer {
   void drawAcrossView(bool may_clip) {
     worker_.clock.then(Stage::kClip);
     testRuns(may_clip);
+    if (!may_clip && !any_rejected_) return drawWhole();
     worker_.clock.then(Stage::kTransform);
     transformKept();
     worker_.clock.then(Stage::kClip);
@@ -88,6 +87,12 @@ class PatchDrawer {
   bool isRejected(std::size_t run) const { return (worker_.run_codes[run].must & kOutsideBits) != 0; }
   bool needsCodes(std::size_t run) const { return (worker_.run_codes[run].may & kClipBits) != 0; }
 
+  void transformWhole() {
+    transformPatch(mesh_.vertices, at_, view_.clip_from_object, worker_.clip);
+    projectVertices(worker_.clip, 0, patch_.vertex_count, viewport_, worker_.projected);
+    for (const grouping::VertexRun& run : runs()) countTransformed(run, run.vertex_count);
+  }
+
   void countTransformed(const grouping::VertexRun& run, std::uint32_t count) {
     worker_.counters.vertices_transformed += count;
     (run.kind == grouping::RunKind::kFull ? worker_.counters.vertices_full : worker_.counters.vertices_grouped) +=
@@ -109,10 +114,12 @@ class PatchDrawer {
         ++worker_.counters.groups_outside;
       else if (!needsCodes(r))
         ++worker_.counters.groups_inside;
+      any_rejected_ = any_rejected_ || isRejected(r);
     }
   }
 
   void transformKept() {
+    if (!any_rejected_) return transformWhole();
     RunStart start(at_);
     for (std::size_t r = 0; r < at_.run_count; ++r) {
       const grouping::VertexRun& run = runs()[r];
@@ -127,27 +134,30 @@ class PatchDrawer {
     countTransformed(run, end - begin);
   }
 
-  // Rejected and accepted runs give their codes to all members, the others are coded one by one.
+  // Rejected and accepted runs give their codes to all members; in the others each vertex is coded, after which such a
+  // run may prove to be one or the other.
   void codeVertices() {
     std::uint32_t first = 0;
     for (std::size_t r = 0; r < at_.run_count; ++r) {
       const std::uint32_t last = first + runs()[r].vertex_count;
-      if (!isRejected(r) && needsCodes(r)) {
-        codeExactly(first, last);
+      const bool untransformed = isRejected(r);
+      worker_.run_untransformed[r] = untransformed;
+      if (!untransformed && needsCodes(r)) {
+        worker_.run_codes[r] = codeExactly(first, last);
       } else {
-        const std::int32_t untransformed = isRejected(r) ? kUntransformed : 0;
         std::fill(worker_.codes.must.begin() + first, worker_.codes.must.begin() + last, worker_.run_codes[r].must);
         std::fill(worker_.codes.may.begin() + first, worker_.codes.may.begin() + last,
-                  worker_.run_codes[r].may | untransformed);
+                  worker_.run_codes[r].may | (untransformed ? kUntransformed : 0));
       }
       first = last;
     }
   }
 
-  void codeExactly(std::uint32_t first, std::uint32_t last) {
-    outcodeVertices(worker_.clip, first, last, viewport_, worker_.codes.must.data());
+  RunCodes codeExactly(std::uint32_t first, std::uint32_t last) {
+    const OutcodeSummary summary = outcodeVertices(worker_.clip, first, last, viewport_, worker_.codes.must.data());
     std::copy(worker_.codes.must.begin() + first, worker_.codes.must.begin() + last, worker_.codes.may.begin() + first);
     worker_.counters.vertices_coded += last - first;
+    return {summary.all, summary.any};
   }
 
   std::int32_t exactCode(std::uint32_t v) const {
@@ -200,7 +210,7 @@ class PatchDrawer {
     RunStart start(at_);
     for (std::size_t r = 0; r < at_.run_count; ++r) {
       const grouping::VertexRun& run = runs()[r];
-      for (std::uint32_t begin = 0; isRejected(r) && begin < run.vertex_count; begin += kRebuiltAtOnce) {
+      for (std::uint32_t begin = 0; worker_.run_untransformed[r] && begin < run.vertex_count; begin += kRebuiltAtOnce) {
         const std::uint32_t end = std::min<std::uint32_t>(begin + kRebuiltAtOnce, run.vertex_count);
         const auto first = needed.begin() + start.vertex;
         if (std::find(first + begin, first + end, true) == first + end) continue;
@@ -307,6 +317,7 @@ class PatchDrawer {
   raster::SetupCounts counts_;
   std::uint32_t undecided_count_ = 0;
   std::int32_t any_untransformed_ = 0;
+  bool any_rejected_ = false;
 };
 
 }  // namespace

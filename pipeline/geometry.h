@@ -34,6 +34,7 @@ struct GeometryWorker {
   ProjectedVertices projected;
   VertexCodes codes;
   std::array<RunCodes, kMaxPatchVertices> run_codes;
+  std::array<bool, kMaxPatchVertices> run_untransformed;
   std::array<std::uint32_t, 512> undecided;  ///< triangles that are not known to be outside
   TriangleRun unclipped;
   std::vector<raster::TileEntries> tile_entries;

@@ -105,7 +105,7 @@ grouping::VertexGroups findGroups(const mesh::Mesh& mesh, const GroupingOptions&
 }
 
 // Shorter runs on a plane cost more than transforming their vertices in full: bench/pipeline, transform by run length.
-constexpr std::uint32_t kMinPlaneRun = 8;
+constexpr std::uint32_t kMinPlaneRun = 16;
 constexpr std::uint32_t kNoPlaneRuns = 1000;
 
 // Moves the mesh's vertices to where their groups put them and sorts the patches by group.

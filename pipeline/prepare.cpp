@@ -184,7 +184,8 @@ std::uint64_t PreparedMesh::bytes() const {
 
 const float* PreparedMesh::shadingPosition(std::size_t axis) const {
   if (!position[axis].empty()) return position[axis].data();
-  return vertices.isFullBySlot() ? vertices.full[axis].data() : nullptr;
+  if (!vertices.isFullBySlot() || patches.empty()) return nullptr;
+  return vertices.full.data() + axis * vertices.patches[0].full_stride;
 }
 
 PreparedScene prepareScene(scenes::Scene scene, TaskPool& pool, const GroupingOptions& grouping) {

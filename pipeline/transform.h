@@ -65,7 +65,7 @@ struct OutcodeSummary {
 struct RunStart {
   std::uint32_t vertex = 0;     ///< local number of its first vertex
   std::uint32_t full = 0;       ///< into VertexRuns::full
-  std::uint32_t parameter = 0;  ///< into VertexRuns::quantised or parameters
+  std::uint32_t parameter = 0;  ///< s, into VertexRuns::quantised or parameters
 
   explicit RunStart(const grouping::PatchRuns& patch) : full(patch.first_full), parameter(patch.first_parameter) {}
   void skip(const grouping::VertexRun& run) {

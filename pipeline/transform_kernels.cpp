@@ -19,8 +19,6 @@ const hn::RebindToSigned<decltype(df)> di;
 using VF = hn::Vec<decltype(df)>;
 using VI = hn::Vec<decltype(di)>;
 
-const hn::Rebind<std::uint16_t, decltype(df)> du16;
-
 // Where transformed vertices go. Whole vectors: also beyond the end of a run, where the next one overwrites them.
 struct WholeVectors {
   ClipVertices& out;
@@ -35,13 +33,13 @@ struct UpToEnd {
 
 // ((m3 + a x_a) + b x_b) + c x_c with (a, b, c) = (axis, the two others).
 template <class Target>
-HWY_INLINE void TransformFull(const grouping::VertexRuns& runs, std::size_t axis, std::uint32_t first, std::uint32_t to,
-                              std::uint32_t end, const Mat4& m, const Target& target) {
+HWY_INLINE void TransformFull(const float* x, std::size_t stride, std::size_t axis, std::uint32_t to, std::uint32_t end,
+                              const Mat4& m, const Target& target) {
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(df));
   const auto [second, third] = grouping::axesBeside(axis);
-  const float* const xa = runs.full[axis].data() + first;
-  const float* const xb = runs.full[second].data() + first;
-  const float* const xc = runs.full[third].data() + first;
+  const float* const xa = x + axis * stride;
+  const float* const xb = x + second * stride;
+  const float* const xc = x + third * stride;
   const Vec4 ma = m[static_cast<int>(axis)], mb = m[static_cast<int>(second)], mc = m[static_cast<int>(third)];
   float* const rows[4] = {target.out.x, target.out.y, target.out.z, target.out.w};
   for (std::uint32_t v = 0; to + v < end; v += lanes) {
@@ -59,21 +57,21 @@ HWY_INLINE void TransformFull(const grouping::VertexRuns& runs, std::size_t axis
 
 // Parameters as floats: stored so, or whole numbers of grid steps.
 struct FloatParameters {
-  const float* s;
-  const float* t;
-  VF loadS(std::uint32_t v) const { return hn::LoadU(df, s + v); }
-  VF loadT(std::uint32_t v) const { return hn::LoadU(df, t + v); }
+  const Vec2* st;
+  void load(std::uint32_t v, VF& s, VF& t) const { hn::LoadInterleaved2(df, &st[v].x, s, t); }
 };
 struct GridParameters {
-  const std::uint16_t* s;
-  const std::uint16_t* t;
+  const std::uint32_t* st;
   std::int32_t corner_s;
   std::int32_t corner_t;
-  static VF load(const std::uint16_t* q, std::int32_t corner) {
-    return hn::ConvertTo(df, hn::Add(hn::PromoteTo(di, hn::LoadU(du16, q)), hn::Set(di, corner)));
+  void load(std::uint32_t v, VF& s, VF& t) const {
+    const hn::RebindToUnsigned<decltype(df)> du;
+    const auto both = hn::LoadU(du, st + v);
+    const VI q_s = hn::BitCast(di, hn::And(both, hn::Set(du, 0xFFFFU)));
+    const VI q_t = hn::BitCast(di, hn::ShiftRight<16>(both));
+    s = hn::ConvertTo(df, hn::Add(q_s, hn::Set(di, corner_s)));
+    t = hn::ConvertTo(df, hn::Add(q_t, hn::Set(di, corner_t)));
   }
-  VF loadS(std::uint32_t v) const { return load(s + v, corner_s); }
-  VF loadT(std::uint32_t v) const { return load(t + v, corner_t); }
 };
 
 // [PG] eq. 2: base + s S + t T.
@@ -83,8 +81,8 @@ HWY_INLINE void TransformPlane(const Parameters& parameters, const Vec4& base, c
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(df));
   float* const rows[4] = {target.out.x, target.out.y, target.out.z, target.out.w};
   for (std::uint32_t v = 0; to + v < end; v += lanes) {
-    const VF s = parameters.loadS(v);
-    const VF t = parameters.loadT(v);
+    VF s, t;
+    parameters.load(v, s, t);
     for (int row = 0; row < 4; ++row) {
       const VF sum = hn::Add(hn::Set(df, base[row]), hn::Mul(hn::Set(df, along_s[row]), s));
       target.store(hn::Add(sum, hn::Mul(hn::Set(df, along_t[row]), t)), rows[row], to + v, end);
@@ -92,14 +90,16 @@ HWY_INLINE void TransformPlane(const Parameters& parameters, const Vec4& base, c
   }
 }
 
-// [PG] eq. 1: base + s L.
-template <class LoadS, class Target>
-HWY_INLINE void TransformLine(const LoadS& load_s, const Vec4& base, const Vec4& along, std::uint32_t to,
-                              std::uint32_t end, const Target& target) {
+// [PG] eq. 1: base + s L, with s = s0 + q ds for the stored q.
+template <class Parameters, class Target>
+HWY_INLINE void TransformLine(const Parameters& parameters, float s0, float ds, const Vec4& base, const Vec4& along,
+                              std::uint32_t to, std::uint32_t end, const Target& target) {
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(df));
   float* const rows[4] = {target.out.x, target.out.y, target.out.z, target.out.w};
   for (std::uint32_t v = 0; to + v < end; v += lanes) {
-    const VF s = load_s(v);
+    VF s, unused;
+    parameters.load(v, s, unused);
+    s = hn::Add(hn::Set(df, s0), hn::Mul(s, hn::Set(df, ds)));
     for (int row = 0; row < 4; ++row)
       target.store(hn::Add(hn::Set(df, base[row]), hn::Mul(hn::Set(df, along[row]), s)), rows[row], to + v, end);
   }
@@ -113,12 +113,11 @@ HWY_INLINE void TransformPlaneRun(const grouping::VertexRuns& runs, const groupi
   const Vec4 base = m[3] + m[run.axis] * run.plane;
   const Vec4 s = m[static_cast<int>(i)], t = m[static_cast<int>(j)];
   if (runs.form == grouping::ParameterForm::kFloat) {
-    const FloatParameters parameters{runs.parameters[0].data() + first, runs.parameters[1].data() + first};
+    const FloatParameters parameters{runs.parameters.data() + first};
     TransformPlane(parameters, base, s, t, to, end, target);
   } else {
     // Scaling by a power of two is exact: these are the products of the whole coordinates.
-    const GridParameters parameters{runs.quantised[0].data() + first, runs.quantised[1].data() + first, patch.corner[i],
-                                    patch.corner[j]};
+    const GridParameters parameters{runs.quantised.data() + first, patch.corner[i], patch.corner[j]};
     TransformPlane(parameters, base, s * runs.step, t * runs.step, to, end, target);
   }
 }
@@ -129,17 +128,10 @@ HWY_INLINE void TransformLineRun(const grouping::VertexRuns& runs, const groupin
   const grouping::RunLine& line = runs.lines[run.line];
   const Vec4 base = ((m[3] + m[0] * line.base.x) + m[1] * line.base.y) + m[2] * line.base.z;
   const Vec4 along = (m[0] * line.direction.x + m[1] * line.direction.y) + m[2] * line.direction.z;
-  if (runs.form == grouping::ParameterForm::kFloat) {
-    const float* const s = runs.parameters[0].data() + first;
-    TransformLine([&](std::uint32_t v) HWY_ATTR { return hn::LoadU(df, s + v); }, base, along, to, end, target);
-  } else {
-    const std::uint16_t* const q = runs.quantised[0].data() + first;
-    const auto load_s = [&](std::uint32_t v) HWY_ATTR {
-      const VF steps = hn::ConvertTo(df, hn::PromoteTo(di, hn::LoadU(du16, q + v)));
-      return hn::Add(hn::Set(df, line.s0), hn::Mul(steps, hn::Set(df, line.ds)));
-    };
-    TransformLine(load_s, base, along, to, end, target);
-  }
+  if (runs.form == grouping::ParameterForm::kFloat)
+    TransformLine(FloatParameters{runs.parameters.data() + first}, 0.0F, 1.0F, base, along, to, end, target);
+  else
+    TransformLine(GridParameters{runs.quantised.data() + first, 0, 0}, line.s0, line.ds, base, along, to, end, target);
 }
 
 // Vertices [begin, end) of a run.
@@ -150,7 +142,7 @@ HWY_INLINE void TransformAnyRun(const grouping::VertexRuns& runs, const grouping
   const std::uint32_t to = start.vertex + begin;
   const std::uint32_t to_end = start.vertex + end;
   if (run.kind == grouping::RunKind::kFull)
-    TransformFull(runs, run.axis, start.full + begin, to, to_end, m, target);
+    TransformFull(runs.full.data() + start.full + begin, patch.full_stride, run.axis, to, to_end, m, target);
   else if (run.kind == grouping::RunKind::kPlane)
     TransformPlaneRun(runs, patch, run, start.parameter + begin, to, to_end, m, target);
   else

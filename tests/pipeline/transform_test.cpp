@@ -27,6 +27,7 @@ struct OneRun {
     vertices.patches[0].run_count = 1;
     vertices.runs.resize(1);
     vertices.runs[0].vertex_count = static_cast<std::uint16_t>(count);
+    vertices.patches[0].full_stride = count;
   }
   grouping::PatchRuns& patch() { return vertices.patches[0]; }
   grouping::VertexRun& run() { return vertices.runs[0]; }
@@ -42,7 +43,7 @@ std::vector<float> randomFloats(std::mt19937& rng, std::size_t count) {
 OneRun fullRun(std::mt19937& rng, std::uint32_t count, std::uint8_t axis) {
   OneRun one(count);
   one.run().axis = axis;
-  for (auto& coordinates : one.vertices.full) coordinates = randomFloats(rng, count);
+  one.vertices.full = randomFloats(rng, std::size_t{3} * count);
   return one;
 }
 
@@ -81,7 +82,8 @@ TEST_CASE("pipeline/transform: every SIMD target equals the references, bit for 
       std::int32_t any = 0;
       for (std::uint32_t v = 0; v < count; ++v) {
         CAPTURE(v);
-        const Vec3 position(one.vertices.full[0][v], one.vertices.full[1][v], one.vertices.full[2][v]);
+        const std::vector<float>& full = one.vertices.full;
+        const Vec3 position(full[v], full[v + count], full[v + 2 * count]);
         const Vec4 expected = transformVertex(position, clip_from_object, one.run().axis);
         checkBits(clip, v, expected);
         CHECK(codes[v] == outcodeVertex(expected, viewport));
@@ -119,17 +121,17 @@ TEST_CASE("pipeline/transform: planes and lines equal the reference on every SIM
           one.run().line = 0;
           runs.lines = {{Vec3(0.1F, 0.2F, 0.3F), Vec3(0.9F, -0.4F, 0.2F), -0.3F, 1e-5F}};
         }
-        for (std::size_t k = 0; k < 2; ++k) {
-          runs.parameters[k] = randomFloats(rng, count);
-          for (std::uint32_t v = 0; v < count + grouping::kRunAlignment; ++v)
-            runs.quantised[k].push_back(static_cast<std::uint16_t>(word(rng)));
+        const std::vector<float> floats = randomFloats(rng, std::size_t{2} * count + grouping::kRunAlignment);
+        for (std::uint32_t v = 0; v < count + grouping::kRunAlignment; ++v) {
+          runs.parameters.emplace_back(floats[2 * v], floats[2 * v + 1]);
+          runs.quantised.push_back(static_cast<std::uint32_t>(word(rng)) | static_cast<std::uint32_t>(word(rng)) << 16);
         }
         const Mat4 clip_from_object = randomMatrix(rng);
         const auto stored = [&](std::uint32_t v) {
           return form == grouping::ParameterForm::k16Bit
-                     ? StoredParameters{static_cast<float>(runs.quantised[0][v]),
-                                        static_cast<float>(runs.quantised[1][v])}
-                     : StoredParameters{runs.parameters[0][v], runs.parameters[1][v]};
+                     ? StoredParameters{static_cast<float>(runs.quantised[v] & 0xFFFFU),
+                                        static_cast<float>(runs.quantised[v] >> 16)}
+                     : StoredParameters{runs.parameters[v].x, runs.parameters[v].y};
         };
         forEachTarget([&] {
           ClipVertices clip;
@@ -163,8 +165,7 @@ TEST_CASE("pipeline/transform: a vertex on a plane comes out as if it had been t
     runs.patches[0].run_count = 1;
     run.vertex_count = 1;
     runs.runs = {run};
-    runs.quantised[0].assign(17, static_cast<std::uint16_t>(s));
-    runs.quantised[1].assign(17, static_cast<std::uint16_t>(t));
+    runs.quantised.assign(17, static_cast<std::uint32_t>(s) | static_cast<std::uint32_t>(t) << 16);
     const Mat4 clip_from_object = randomMatrix(rng);
     ClipVertices clip;
     transformPatch(runs, runs.patches[0], clip_from_object, clip);

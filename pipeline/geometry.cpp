@@ -88,8 +88,7 @@ class PatchDrawer {
   bool needsCodes(std::size_t run) const { return (worker_.run_codes[run].may & kClipBits) != 0; }
 
   void transformWhole() {
-    transformPatch(mesh_.vertices, at_, view_.clip_from_object, worker_.clip);
-    projectVertices(worker_.clip, 0, patch_.vertex_count, viewport_, worker_.projected);
+    transformPatch(mesh_.vertices, at_, view_.clip_from_object, viewport_, worker_.projected);
     for (const grouping::VertexRun& run : runs()) countTransformed(run, run.vertex_count);
   }
 
@@ -119,7 +118,6 @@ class PatchDrawer {
   }
 
   void transformKept() {
-    if (!any_rejected_) return transformWhole();
     RunStart start(at_);
     for (std::size_t r = 0; r < at_.run_count; ++r) {
       const grouping::VertexRun& run = runs()[r];

@@ -74,11 +74,12 @@ struct RunStart {
   }
 };
 
-/// All vertices of a patch: those in full by the matrix, others from their plane or line ([PG] eqs. 1, 2).
+/// All vertices of a patch straight to the screen: those in full by the matrix, others from their plane or line ([PG]
+/// eqs. 1, 2). For patches that need no clipping: clip coordinates do not leave the registers.
 void transformPatch(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const Mat4& clip_from_object,
-                    ClipVertices& out);
+                    const Viewport& viewport, ProjectedVertices& out);
 
-/// Vertices [begin, end) of one run, counted from its first; nothing else of `out` is written.
+/// Vertices [begin, end) of one run, counted from its first, to clip space; nothing else of `out` is written.
 void transformRun(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const grouping::VertexRun& run,
                   const RunStart& start, std::uint32_t begin, std::uint32_t end, const Mat4& clip_from_object,
                   ClipVertices& out);

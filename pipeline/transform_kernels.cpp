@@ -19,15 +19,35 @@ const hn::RebindToSigned<decltype(df)> di;
 using VF = hn::Vec<decltype(df)>;
 using VI = hn::Vec<decltype(di)>;
 
-// Where transformed vertices go. Whole vectors: also beyond the end of a run, where the next one overwrites them.
-struct WholeVectors {
+// Where a vector of transformed vertices goes. ToScreen stores whole vectors: what is beyond the end of a run is
+// overwritten by the next one.
+struct ToClipSpace {
   ClipVertices& out;
-  void store(VF v, float* row, std::uint32_t at, std::uint32_t /*end*/) const { hn::StoreU(v, df, row + at); }
+  void store(VF x, VF y, VF z, VF w, std::uint32_t at, std::uint32_t end) const {
+    const auto valid = hn::FirstN(df, std::min<std::size_t>(hn::Lanes(df), end - at));
+    hn::BlendedStore(x, valid, df, out.x + at);
+    hn::BlendedStore(y, valid, df, out.y + at);
+    hn::BlendedStore(z, valid, df, out.z + at);
+    hn::BlendedStore(w, valid, df, out.w + at);
+  }
 };
-struct UpToEnd {
-  ClipVertices& out;
-  void store(VF v, float* row, std::uint32_t at, std::uint32_t end) const {
-    hn::BlendedStore(v, hn::FirstN(df, std::min<std::size_t>(hn::Lanes(df), end - at)), df, row + at);
+struct ToScreen {
+  VF half_width;
+  VF half_height;
+  ProjectedVertices& out;
+
+  ToScreen(const Viewport& viewport, ProjectedVertices& to)
+      : half_width(hn::Set(df, viewport.half_width_px)), half_height(hn::Set(df, viewport.half_height_px)), out(to) {}
+
+  void store(VF x, VF y, VF z, VF w, std::uint32_t at, std::uint32_t /*end*/) const {
+    const VF inv_w = hn::Div(hn::Set(df, 1.0F), w);
+    const VF subpixels = hn::Set(df, static_cast<float>(raster::kSubpixels));
+    const VF x_px = hn::Add(hn::Mul(hn::Mul(x, inv_w), half_width), half_width);
+    const VF y_px = hn::Sub(half_height, hn::Mul(hn::Mul(y, inv_w), half_height));
+    hn::StoreU(hn::NearestInt(hn::Mul(x_px, subpixels)), di, out.x_fx + at);
+    hn::StoreU(hn::NearestInt(hn::Mul(y_px, subpixels)), di, out.y_fx + at);
+    hn::StoreU(hn::Mul(z, inv_w), df, out.depth + at);
+    hn::StoreU(inv_w, df, out.inv_w + at);
   }
 };
 
@@ -41,17 +61,15 @@ HWY_INLINE void TransformFull(const float* x, std::size_t stride, std::size_t ax
   const float* const xb = x + second * stride;
   const float* const xc = x + third * stride;
   const Vec4 ma = m[static_cast<int>(axis)], mb = m[static_cast<int>(second)], mc = m[static_cast<int>(third)];
-  float* const rows[4] = {target.out.x, target.out.y, target.out.z, target.out.w};
   for (std::uint32_t v = 0; to + v < end; v += lanes) {
     const VF a = hn::LoadU(df, xa + v);
     const VF b = hn::LoadU(df, xb + v);
     const VF c = hn::LoadU(df, xc + v);
-    for (int row = 0; row < 4; ++row) {
-      VF sum = hn::Add(hn::Set(df, m[3][row]), hn::Mul(hn::Set(df, ma[row]), a));
-      sum = hn::Add(sum, hn::Mul(hn::Set(df, mb[row]), b));
-      sum = hn::Add(sum, hn::Mul(hn::Set(df, mc[row]), c));
-      target.store(sum, rows[row], to + v, end);
-    }
+    const auto row = [&](int i) HWY_ATTR {
+      const VF sum = hn::Add(hn::Set(df, m[3][i]), hn::Mul(hn::Set(df, ma[i]), a));
+      return hn::Add(hn::Add(sum, hn::Mul(hn::Set(df, mb[i]), b)), hn::Mul(hn::Set(df, mc[i]), c));
+    };
+    target.store(row(0), row(1), row(2), row(3), to + v, end);
   }
 }
 
@@ -79,14 +97,14 @@ template <class Parameters, class Target>
 HWY_INLINE void TransformPlane(const Parameters& parameters, const Vec4& base, const Vec4& along_s, const Vec4& along_t,
                                std::uint32_t to, std::uint32_t end, const Target& target) {
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(df));
-  float* const rows[4] = {target.out.x, target.out.y, target.out.z, target.out.w};
   for (std::uint32_t v = 0; to + v < end; v += lanes) {
     VF s, t;
     parameters.load(v, s, t);
-    for (int row = 0; row < 4; ++row) {
-      const VF sum = hn::Add(hn::Set(df, base[row]), hn::Mul(hn::Set(df, along_s[row]), s));
-      target.store(hn::Add(sum, hn::Mul(hn::Set(df, along_t[row]), t)), rows[row], to + v, end);
-    }
+    const auto row = [&](int i) HWY_ATTR {
+      const VF sum = hn::Add(hn::Set(df, base[i]), hn::Mul(hn::Set(df, along_s[i]), s));
+      return hn::Add(sum, hn::Mul(hn::Set(df, along_t[i]), t));
+    };
+    target.store(row(0), row(1), row(2), row(3), to + v, end);
   }
 }
 
@@ -95,13 +113,12 @@ template <class Parameters, class Target>
 HWY_INLINE void TransformLine(const Parameters& parameters, float s0, float ds, const Vec4& base, const Vec4& along,
                               std::uint32_t to, std::uint32_t end, const Target& target) {
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(df));
-  float* const rows[4] = {target.out.x, target.out.y, target.out.z, target.out.w};
   for (std::uint32_t v = 0; to + v < end; v += lanes) {
     VF s, unused;
     parameters.load(v, s, unused);
     s = hn::Add(hn::Set(df, s0), hn::Mul(s, hn::Set(df, ds)));
-    for (int row = 0; row < 4; ++row)
-      target.store(hn::Add(hn::Set(df, base[row]), hn::Mul(hn::Set(df, along[row]), s)), rows[row], to + v, end);
+    const auto row = [&](int i) HWY_ATTR { return hn::Add(hn::Set(df, base[i]), hn::Mul(hn::Set(df, along[i]), s)); };
+    target.store(row(0), row(1), row(2), row(3), to + v, end);
   }
 }
 
@@ -150,37 +167,27 @@ HWY_INLINE void TransformAnyRun(const grouping::VertexRuns& runs, const grouping
 }
 
 void TransformPatch(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const Mat4& m,
-                    ClipVertices& out) {
+                    const Viewport& viewport, ProjectedVertices& out) {
+  const ToScreen target(viewport, out);
   RunStart start(patch);
   for (std::uint32_t r = 0; r < patch.run_count; ++r) {
     const grouping::VertexRun& run = runs.runs[patch.first_run + r];
-    TransformAnyRun(runs, patch, run, start, 0, run.vertex_count, m, WholeVectors{out});
+    TransformAnyRun(runs, patch, run, start, 0, run.vertex_count, m, target);
     start.skip(run);
   }
 }
 
 void TransformRun(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const grouping::VertexRun& run,
                   const RunStart& start, std::uint32_t begin, std::uint32_t end, const Mat4& m, ClipVertices& out) {
-  TransformAnyRun(runs, patch, run, start, begin, end, m, UpToEnd{out});
+  TransformAnyRun(runs, patch, run, start, begin, end, m, ToClipSpace{out});
 }
 
 void ProjectVertices(const ClipVertices& vertices, std::uint32_t begin, std::uint32_t end, const Viewport& viewport,
                      ProjectedVertices& out) {
-  const auto lanes = static_cast<std::uint32_t>(hn::Lanes(df));
-  const VF half_width = hn::Set(df, viewport.half_width_px);
-  const VF half_height = hn::Set(df, viewport.half_height_px);
-  const VF subpixels = hn::Set(df, static_cast<float>(raster::kSubpixels));
-  for (std::uint32_t v = begin; v < end; v += lanes) {
-    const VF inv_w = hn::Div(hn::Set(df, 1.0F), hn::LoadU(df, vertices.w + v));
-    const VF ndc_x = hn::Mul(hn::LoadU(df, vertices.x + v), inv_w);
-    const VF ndc_y = hn::Mul(hn::LoadU(df, vertices.y + v), inv_w);
-    const VF x_px = hn::Add(hn::Mul(ndc_x, half_width), half_width);
-    const VF y_px = hn::Sub(half_height, hn::Mul(ndc_y, half_height));
-    hn::StoreU(hn::NearestInt(hn::Mul(x_px, subpixels)), di, out.x_fx + v);
-    hn::StoreU(hn::NearestInt(hn::Mul(y_px, subpixels)), di, out.y_fx + v);
-    hn::StoreU(hn::Mul(hn::LoadU(df, vertices.z + v), inv_w), df, out.depth + v);
-    hn::StoreU(inv_w, df, out.inv_w + v);
-  }
+  const ToScreen target(viewport, out);
+  for (std::uint32_t v = begin; v < end; v += static_cast<std::uint32_t>(hn::Lanes(df)))
+    target.store(hn::LoadU(df, vertices.x + v), hn::LoadU(df, vertices.y + v), hn::LoadU(df, vertices.z + v),
+                 hn::LoadU(df, vertices.w + v), v, end);
 }
 
 VI BitWhere(hn::Mask<decltype(df)> mask, std::int32_t bit) {
@@ -236,8 +243,8 @@ HWY_EXPORT(ProjectVertices);
 HWY_EXPORT(OutcodeVertices);
 
 void transformPatch(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const Mat4& clip_from_object,
-                    ClipVertices& out) {
-  HWY_DYNAMIC_DISPATCH(TransformPatch)(runs, patch, clip_from_object, out);
+                    const Viewport& viewport, ProjectedVertices& out) {
+  HWY_DYNAMIC_DISPATCH(TransformPatch)(runs, patch, clip_from_object, viewport, out);
 }
 void transformRun(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const grouping::VertexRun& run,
                   const RunStart& start, std::uint32_t begin, std::uint32_t end, const Mat4& clip_from_object,

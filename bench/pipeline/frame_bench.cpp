@@ -34,12 +34,10 @@ void transformAndProject(benchmark::State& state) {
   Mat4 clip_from_object(1.0F);
   clip_from_object[3] = {0.1F, 0.2F, 0.3F, 2.0F};
   const Viewport viewport(kWidth, kHeight);
-  static ClipVertices clip;
   static ProjectedVertices projected;
   for (auto _ : state)
     for (const grouping::PatchRuns& patch : vertices.patches) {
-      transformPatch(vertices, patch, clip_from_object, clip);
-      projectVertices(clip, 0, kMaxPatchVertices, viewport, projected);
+      transformPatch(vertices, patch, clip_from_object, viewport, projected);
       benchmark::DoNotOptimize(projected);
     }
   state.counters["vertices/s"] = benchmark::Counter(static_cast<double>(patches * kMaxPatchVertices),

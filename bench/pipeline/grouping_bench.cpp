@@ -41,10 +41,10 @@ void transformRuns(benchmark::State& state, RunKind kind, ParameterForm form) {
   const grouping::VertexRuns runs = patchOfRuns(kind, form, length);
   Mat4 clip_from_object(1.0F);
   clip_from_object[3] = {0.1F, 0.2F, 0.3F, 2.0F};
-  static ClipVertices clip;
+  static ProjectedVertices projected;
   for (auto _ : state) {
-    transformPatch(runs, runs.patches[0], clip_from_object, clip);
-    benchmark::DoNotOptimize(clip);
+    transformPatch(runs, runs.patches[0], clip_from_object, Viewport(1920, 1080), projected);
+    benchmark::DoNotOptimize(projected);
     benchmark::ClobberMemory();
   }
   state.counters["vertices/s"] =

@@ -55,6 +55,10 @@ Mat4 randomMatrix(std::mt19937& rng) {
   return m;
 }
 
+void transformWhole(OneRun& one, std::uint32_t count, const Mat4& clip_from_object, ClipVertices& clip) {
+  transformRun(one.vertices, one.patch(), one.run(), RunStart(one.patch()), 0, count, clip_from_object, clip);
+}
+
 void checkBits(const ClipVertices& clip, std::uint32_t v, const Vec4& expected) {
   CHECK(bits(clip.x[v]) == bits(expected.x));
   CHECK(bits(clip.y[v]) == bits(expected.y));
@@ -75,8 +79,10 @@ TEST_CASE("pipeline/transform: every SIMD target equals the references, bit for 
       ClipVertices clip;
       ProjectedVertices projected;
       alignas(64) std::int32_t codes[kVertexSlots];
-      transformPatch(one.vertices, one.patch(), clip_from_object, clip);
+      transformWhole(one, count, clip_from_object, clip);
       projectVertices(clip, 0, count, viewport, projected);
+      ProjectedVertices at_once;
+      transformPatch(one.vertices, one.patch(), clip_from_object, viewport, at_once);
       const OutcodeSummary summary = outcodeVertices(clip, 0, count, viewport, codes);
       std::int32_t all = -1;
       std::int32_t any = 0;
@@ -95,6 +101,10 @@ TEST_CASE("pipeline/transform: every SIMD target equals the references, bit for 
         CHECK(projected.y_fx[v] == p.y_fx);
         CHECK(bits(projected.depth[v]) == bits(p.depth));
         CHECK(bits(projected.inv_w[v]) == bits(p.inv_w));
+        CHECK(at_once.x_fx[v] == p.x_fx);
+        CHECK(at_once.y_fx[v] == p.y_fx);
+        CHECK(bits(at_once.depth[v]) == bits(p.depth));
+        CHECK(bits(at_once.inv_w[v]) == bits(p.inv_w));
       }
       CHECK(summary.all == all);
       CHECK(summary.any == any);
@@ -135,7 +145,7 @@ TEST_CASE("pipeline/transform: planes and lines equal the reference on every SIM
         };
         forEachTarget([&] {
           ClipVertices clip;
-          transformPatch(runs, one.patch(), clip_from_object, clip);
+          transformWhole(one, count, clip_from_object, clip);
           for (std::uint32_t v = 0; v < count; ++v) {
             CAPTURE(v);
             checkBits(clip, v, transformGrouped(runs, one.patch(), one.run(), stored(v), clip_from_object));
@@ -168,7 +178,7 @@ TEST_CASE("pipeline/transform: a vertex on a plane comes out as if it had been t
     runs.quantised.assign(17, static_cast<std::uint32_t>(s) | static_cast<std::uint32_t>(t) << 16);
     const Mat4 clip_from_object = randomMatrix(rng);
     ClipVertices clip;
-    transformPatch(runs, runs.patches[0], clip_from_object, clip);
+    transformRun(runs, runs.patches[0], run, RunStart(patch), 0, 1, clip_from_object, clip);
     checkBits(clip, 0, transformVertex(position, clip_from_object, run.axis));
   }
 }
@@ -179,7 +189,7 @@ TEST_CASE("pipeline/transform: part of a run is written and nothing beside it") 
   const Mat4 clip_from_object = randomMatrix(rng);
   forEachTarget([&] {
     ClipVertices whole;
-    transformPatch(one.vertices, one.patch(), clip_from_object, whole);
+    transformWhole(one, 100, clip_from_object, whole);
     ClipVertices part;
     std::fill(std::begin(part.x), std::end(part.x), 7.0F);
     transformRun(one.vertices, one.patch(), one.run(), RunStart(one.patch()), 16, 37, clip_from_object, part);

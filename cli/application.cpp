@@ -21,6 +21,8 @@ constexpr const char* kFooter =
     "  sheaf render model.glb -o model.png\n"
     "  sheaf render builtin:gallery -o gallery.png --timings\n"
     "  sheaf compare expected.png actual.png -o difference.png\n"
+    "  sheaf simplify scan.ply --vertices 3000 -o small.ply\n"
+    "  sheaf group small.ply --epsilon 0.5% --snapped snapped.ply\n"
     "\n";
 
 /// `--size=`: the parser would take the next word as the value.
@@ -39,7 +41,7 @@ const CLI::App& chosen(const CLI::App& app) {
 
 int parseAndRun(int argc, char** argv) {
   refuseEmptyValues(argc, argv);
-  CLI::App app("Renders meshes to images on the CPU.", "sheaf");
+  CLI::App app("Renders meshes to images on the CPU, and finds vertex groups in them.", "sheaf");
   Run run;
   app.set_help_flag("-h,--help", "Print this help and exit");
   bool version = false;
@@ -49,6 +51,8 @@ int parseAndRun(int argc, char** argv) {
   addRenderCommand(app, run);
   addCompareCommand(app, run);
   addInfoCommand(app, run);
+  addGroupCommand(app, run);
+  addSimplifyCommand(app, run);
   addScenesCommand(app, run);
   try {
     app.parse(argc, argv);
@@ -66,7 +70,8 @@ int parseAndRun(int argc, char** argv) {
     return 0;
   }
   if (!run)
-    throw Error(ErrorCode::kUsage, "a subcommand is missing: render, compare, info or scenes (see sheaf --help)");
+    throw Error(ErrorCode::kUsage,
+                "a subcommand is missing: render, compare, info, group, simplify or scenes (see sheaf --help)");
   return run();
 }
 

@@ -20,6 +20,8 @@ using Run = std::function<int()>;
 void addRenderCommand(CLI::App& app, Run& run);
 void addCompareCommand(CLI::App& app, Run& run);
 void addInfoCommand(CLI::App& app, Run& run);
+void addGroupCommand(CLI::App& app, Run& run);
+void addSimplifyCommand(CLI::App& app, Run& run);
 void addScenesCommand(CLI::App& app, Run& run);
 
 /// The whole program: parses, dispatches, turns exceptions into a line on stderr and an exit code.

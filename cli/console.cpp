@@ -10,11 +10,13 @@
 #include <cstring>
 
 #include "core/error.h"
+#include "core/stage_timer.h"
 
 namespace sheaf::cli {
 namespace {
 
 constexpr std::size_t kMaxWarnings = 20;
+constexpr std::int64_t kProgressPeriodNs = 100'000'000;
 
 /// no-color.org: any value but the empty one switches colours off.
 bool colorWanted() {
@@ -48,6 +50,23 @@ void printWarnings(const std::vector<std::string>& warnings) {
   const std::size_t shown = std::min(warnings.size(), kMaxWarnings);
   for (std::size_t i = 0; i < shown; ++i) printLine("warning:", 33, warnings[i]);
   if (shown < warnings.size()) printLine("warning:", 33, fmt::format("and {} more", warnings.size() - shown));
+}
+
+ProgressLine::ProgressLine(std::string_view what, bool quiet)
+    : what_(what), wanted_(!quiet && isatty(STDERR_FILENO) != 0), next_ns_(nowNs() + kProgressPeriodNs) {}
+
+ProgressLine::~ProgressLine() {
+  if (!shown_) return;
+  fmt::print(stderr, "\r{:{}}\r", "", what_.size() + 6);
+  std::fflush(stderr);
+}
+
+void ProgressLine::show(double done) {
+  if (!wanted_ || nowNs() < next_ns_) return;
+  fmt::print(stderr, "\r{} {:3.0f} %", what_, 100.0 * done);
+  std::fflush(stderr);
+  shown_ = true;
+  next_ns_ = nowNs() + kProgressPeriodNs;
 }
 
 }  // namespace sheaf::cli

@@ -41,12 +41,6 @@ bool isBuiltin(const std::string& input) {
   return input.starts_with("builtin:");
 }
 
-int parseWhole(std::string_view option, const std::string& text, int min, int max) {
-  const double value = parseNumber(option, text, min, max);
-  if (value != std::floor(value)) refuse(fmt::format("{} {}: expected a whole number", option, text));
-  return static_cast<int>(value);
-}
-
 void understandUp(const RenderArguments& arguments, RenderRequest& request) {
   std::optional<bool> z_up;
   for (const std::string& text : arguments.up) {
@@ -120,7 +114,7 @@ void understandMeasuring(const RenderArguments& arguments, RenderRequest& reques
   if (!request.table) request.timings_file = arguments.timings;
   request.trace_file = arguments.trace.value_or("");
   if (arguments.frames) {
-    request.frames = parseWhole("--frames", *arguments.frames, 1, kMaxFrames);
+    request.frames = static_cast<int>(parseWhole("--frames", *arguments.frames, 1, kMaxFrames));
     if (arguments.timings.empty() && !arguments.trace)
       refuse("--frames repeats the picture to measure it: add --timings or --trace");
   }
@@ -216,7 +210,8 @@ RenderRequest understand(const RenderArguments& arguments) {
     if (isBuiltin(request.input)) refuse("--crease is for files: the built-in scenes bring their normals");
     request.crease_angle_rad = radians(parseNumber("--crease", *arguments.crease, 0.0, 180.0));
   }
-  if (arguments.threads) request.threads = parseWhole("--threads", *arguments.threads, 1, kMaxThreads);
+  if (arguments.threads)
+    request.threads = static_cast<int>(parseWhole("--threads", *arguments.threads, 1, kMaxThreads));
   request.cull_patches = !arguments.no_patch_culling;
   request.simd = arguments.simd;
   request.quiet = arguments.quiet;

@@ -129,4 +129,19 @@ PixelLimit parsePixelLimit(std::string_view option, std::string_view text) {
   return {*value, percent};
 }
 
+double parseFraction(std::string_view option, std::string_view text) {
+  const bool percent = text.ends_with('%');
+  const auto value = toNumber<double>(percent ? text.substr(0, text.size() - 1) : text);
+  if (!value || !(*value >= 0.0 && *value <= (percent ? 100.0 : 1.0)))
+    refuse(option, text, "a percentage (0.5%) or a fraction (0.005), at most 100%");
+  return percent ? *value / 100.0 : *value;
+}
+
+std::int64_t parseWhole(std::string_view option, std::string_view text, std::int64_t min, std::int64_t max) {
+  const auto value = toNumber<std::int64_t>(text);
+  if (!value || *value < min || *value > max)
+    refuse(option, text, fmt::format("a whole number from {} to {}", min, max));
+  return *value;
+}
+
 }  // namespace sheaf::cli

@@ -2,6 +2,7 @@
 // Error(kUsage).
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -49,5 +50,11 @@ struct PixelLimit {
   bool percent = false;
 };
 PixelLimit parsePixelLimit(std::string_view option, std::string_view text);
+
+/// `0.5%` or `0.005`, both 0.005; in [0, 1].
+double parseFraction(std::string_view option, std::string_view text);
+
+/// A whole number in [min, max].
+std::int64_t parseWhole(std::string_view option, std::string_view text, std::int64_t min, std::int64_t max);
 
 }  // namespace sheaf::cli

@@ -1,6 +1,7 @@
 // grouping/plane_sets: the directions that planar groups may have.
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <vector>
 
@@ -16,5 +17,10 @@ std::vector<PlaneFrame> dodecahedronPlanes();
 std::vector<PlaneFrame> axisAndDodecahedronPlanes();
 /// normals  of any length above 0. Throws Error(kBadInput) for one without a direction, and if there are none.
 std::vector<PlaneFrame> planesFromNormals(std::span<const DVec3> normals);
+
+/// A text file of normals, three numbers to a line; `#` begins a comment, empty lines are skipped. At most
+/// kMaxFilePlanes. Throws Error(kBadInput) "file:line: reason", or as readFile() does.
+inline constexpr std::size_t kMaxFilePlanes = 255;
+std::vector<PlaneFrame> loadPlanes(const std::filesystem::path& path);
 
 }  // namespace sheaf::grouping

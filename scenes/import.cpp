@@ -54,14 +54,17 @@ Scene sceneOfOneMesh(mesh::Mesh mesh, Material material, std::string_view name, 
                      std::vector<std::string> warnings) {
   Scene scene;
   scene.warnings = std::move(warnings);
-  if (mesh.triangles.empty()) refuse(name, "has no triangles");
+  const bool points_alone = mesh.triangles.empty() && !mesh.positions.empty() && !options.for_drawing;
+  if (mesh.triangles.empty() && !points_alone) refuse(name, "has no triangles");
   dropBadTriangles(mesh, name, scene);
-  if (mesh.triangles.empty()) refuse(name, "has no triangles: each has a position that is infinite or not a number");
+  if (mesh.triangles.empty() && !points_alone)
+    refuse(name, "has no triangles: each has a position that is infinite or not a number");
   if (!mesh.normals.empty() && !normalizeNormals(mesh)) {
-    scene.warnings.push_back(fmt::format("{}: some normals have no direction; normals are made anew", name));
+    scene.warnings.push_back(fmt::format("{}: some normals have no direction; {}", name,
+                                         options.for_drawing ? "normals are made anew" : "they are left out"));
     mesh.normals = {};
   }
-  if (mesh.normals.empty()) mesh::makeSmoothNormals(mesh, options.crease_angle_rad);
+  if (mesh.normals.empty() && options.for_drawing) mesh::makeSmoothNormals(mesh, options.crease_angle_rad);
   scene.meshes.push_back(std::move(mesh));
   scene.materials.push_back(std::move(material));
   scene.instances.emplace_back();

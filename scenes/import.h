@@ -44,8 +44,8 @@ bool normalizeNormals(mesh::Mesh& mesh);
 /// side of a triangle is meant to be seen, and scans are open.
 Material plainMaterial(bool has_vertex_colors);
 
-/// A Scene of one mesh that is drawn once: bad triangles dropped, normals made where they are missing. Throws
-/// Error(kBadInput) if no triangle is left.
+/// A Scene of one mesh that is drawn once: bad triangles dropped, normals made where they are missing and wanted.
+/// Throws Error(kBadInput) if no triangle is left, or none was there and it is to be drawn.
 Scene sceneOfOneMesh(mesh::Mesh mesh, Material material, std::string_view name, const ImportOptions& options,
                      std::vector<std::string> warnings);
 

@@ -256,6 +256,12 @@ void makeNormals(ObjFile& file, double crease_angle_rad) {
   file.normals = std::move(surface.normals);
 }
 
+void dropNormals(ObjFile& file) {
+  file.normals.clear();
+  for (auto& t : file.triangles)
+    for (Corner& c : t) c.normal = kNone;
+}
+
 // Whether each corner has a normal that can be used; makes them unit length.
 bool normalizeNormals(ObjFile& file) {
   for (Vec3& n : file.normals) {
@@ -309,7 +315,7 @@ class VertexJoiner {
   void append(const Corner& corner) {
     const auto p = static_cast<std::size_t>(corner.position);
     mesh_.positions.push_back(file_.positions[p]);
-    mesh_.normals.push_back(file_.normals[static_cast<std::size_t>(corner.normal)]);
+    if (!file_.normals.empty()) mesh_.normals.push_back(file_.normals[static_cast<std::size_t>(corner.normal)]);
     if (!file_.colors.empty()) mesh_.colors.push_back(file_.colors[p]);
     if (with_texcoords_)
       mesh_.texcoords.push_back(corner.texcoord == kNone ? Vec2(0.0F)
@@ -434,8 +440,12 @@ Scene importObj(ImportSource source, const ImportOptions& options) {
   if (file.triangles.empty()) refuse(source.name, parser.whyEmpty());
   if (!normalizeNormals(file)) {
     if (!file.normals.empty())
-      scene.warnings.push_back(fmt::format("{}: some corners have no normal; normals are made anew", source.name));
-    makeNormals(file, options.crease_angle_rad);
+      scene.warnings.push_back(fmt::format("{}: some corners have no normal; {}", source.name,
+                                           options.for_drawing ? "normals are made anew" : "they are left out"));
+    if (options.for_drawing)
+      makeNormals(file, options.crease_angle_rad);
+    else
+      dropNormals(file);
   }
   MaterialLibrary library(source, scene);
   for (const std::string& name : file.libraries) library.read(name);

@@ -116,7 +116,8 @@ Scene importOff(ImportSource source, const ImportOptions& options) {
   TextScanner scanner(source.bytes, source.name, '#');
   mesh::Mesh mesh = parse(scanner, source.name, warnings);
   source.bytes = {};
-  if (mesh.triangles.empty() && !mesh.positions.empty()) refuse(source.name, "has points but no faces");
+  if (mesh.triangles.empty() && !mesh.positions.empty() && options.for_drawing)
+    refuse(source.name, "has points but no faces");
   const bool has_colors = !mesh.colors.empty();
   return sceneOfOneMesh(std::move(mesh), plainMaterial(has_colors), source.name, options, std::move(warnings));
 }

@@ -416,7 +416,8 @@ Scene importPly(ImportSource source, const ImportOptions& options) {
   std::vector<std::string> warnings;
   mesh::Mesh mesh = readMesh(header, source.bytes, source.name, warnings);
   source.bytes = {};
-  if (mesh.triangles.empty() && !mesh.positions.empty()) refuse(source.name, "has points but no faces");
+  if (mesh.triangles.empty() && !mesh.positions.empty() && options.for_drawing)
+    refuse(source.name, "has points but no faces");
   const bool has_colors = !mesh.colors.empty();
   Scene scene = sceneOfOneMesh(std::move(mesh), plainMaterial(has_colors), source.name, options, std::move(warnings));
   addTexture(header, source, scene);

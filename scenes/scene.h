@@ -112,6 +112,9 @@ Box3 boundsOf(const Scene& scene);
 struct ImportOptions {
   double crease_angle_rad = 1.0471975511965976;  ///< 60 degrees: sharper edges stay sharp where normals are made
   bool z_up = false;                             ///< turn a +Z-up file to +Y up
+  /// False leaves a mesh as the file has it: no normals are made, so no vertex is split at a crease, and a PLY or OFF
+  /// file may hold points alone.
+  bool for_drawing = true;
 };
 Scene loadScene(const std::string& input, const ImportOptions& options = {});
 

@@ -17,7 +17,9 @@ constexpr const char* kTriangleStl =
 TEST_CASE("cli/command: help goes to stdout and names every option, examples and exit codes") {
   const TempFolder folder;
   const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> expected = {
-      {{"--help"}, {"render", "compare", "info", "scenes", "--version", "builtin:", "Examples", "Exit codes", "70"}},
+      {{"--help"},
+       {"render", "compare", "info", "group", "simplify", "scenes", "--version", "builtin:", "Examples", "Exit codes",
+        "70"}},
       {{"render", "--help"},
        {"INPUT",
         "-o,",
@@ -48,6 +50,11 @@ TEST_CASE("cli/command: help goes to stdout and names every option, examples and
         "Exit codes"}},
       {{"compare", "-h"}, {"-o,", "--max-differing", "--max-error", "--min-psnr", "--json", "Examples", "Exit codes"}},
       {{"info", "--help"}, {"--json", "--quiet", "Exit codes"}},
+      {{"group", "--help"},
+       {"--method", "--metric", "--limit", "--epsilon", "--planes", "--key", "--segment-only", "--no-flips", "-o,",
+        "--bits", "--snapped", "--json", "-q,", "linear|planar", "0.5%", "Examples", "Exit codes"}},
+      {{"simplify", "--help"},
+       {"-o,", "--vertices", "--faces", "--attributes", "--json", "-q,", "Examples", "Exit codes"}},
       {{"scenes", "--help"}, {"--json", "Exit codes"}}};
   for (const auto& [arguments, words] : expected) {
     CAPTURE(arguments.front());

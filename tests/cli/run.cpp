@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <stdexcept>
 
@@ -16,6 +17,42 @@ void redirect(const std::string& path, int to) {
   const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   if (file < 0 || dup2(file, to) < 0) _exit(126);
   close(file);
+}
+
+/// A pseudo terminal: what is written to `path` can be read from `main`.
+struct Terminal {
+  int main = -1;
+  std::string path;
+
+  Terminal() : main(posix_openpt(O_RDWR | O_NOCTTY)) {
+    if (main < 0 || grantpt(main) != 0 || unlockpt(main) != 0) throw std::runtime_error("no pseudo terminal");
+    path = ptsname(main);
+  }
+  ~Terminal() { close(main); }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  /// Until the other side is closed.
+  std::string readAll() const {
+    std::string text;
+    for (char block[256];;) {
+      const ssize_t n = read(main, block, sizeof block);
+      if (n <= 0) return text;
+      text.append(block, static_cast<std::size_t>(n));
+    }
+  }
+};
+
+/// The program may not have reached what is to be interrupted when the first signal comes.
+int waitWhileSignalling(pid_t child, int signal) {
+  for (;;) {
+    usleep(100'000);
+    int status = 0;
+    const pid_t ended = waitpid(child, &status, WNOHANG);
+    if (ended == child) return status;
+    if (ended < 0) throw std::runtime_error("waitpid failed");
+    kill(child, signal);
+  }
 }
 
 [[noreturn]] void runChild(const TempFolder& folder, std::vector<char*>& argv, const RunSettings& settings,
@@ -43,12 +80,18 @@ RunResult runSheaf(const TempFolder& folder, const std::vector<std::string>& arg
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
 
+  const std::optional<Terminal> terminal = settings.err_is_terminal ? std::make_optional<Terminal>() : std::nullopt;
   const pid_t child = fork();
   if (child < 0) throw std::runtime_error("fork failed");
-  if (child == 0) runChild(folder, argv, settings, out_path, streams.file("err"));
+  if (child == 0) runChild(folder, argv, settings, out_path, terminal ? terminal->path : streams.file("err"));
+  const std::string terminal_text = terminal ? terminal->readAll() : std::string();
   int status = 0;
-  if (waitpid(child, &status, 0) != child) throw std::runtime_error("waitpid failed");
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), streams.read("out"), streams.read("err")};
+  if (settings.signal)
+    status = waitWhileSignalling(child, *settings.signal);
+  else if (waitpid(child, &status, 0) != child)
+    throw std::runtime_error("waitpid failed");
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), streams.read("out"),
+          terminal ? terminal_text : streams.read("err")};
 }
 
 bool isOneErrorLine(const std::string& err) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,8 @@ struct RunSettings {
   std::vector<std::pair<std::string, std::string>> environment;  ///< added to ours
   std::size_t max_memory = 0;                                    ///< address space in bytes, 0 = as much as there is
   std::string out_path;                                          ///< where stdout goes instead of RunResult::out
+  bool err_is_terminal = false;                                  ///< stderr is a (pseudo) terminal
+  std::optional<int> signal = std::nullopt;                      ///< sent again and again until the program ends
 };
 
 /// Runs `sheaf` with `arguments` in `folder`.

@@ -78,4 +78,25 @@ TEST_CASE("cli/values: a limit is a whole number of pixels or a percentage") {
   }
 }
 
+TEST_CASE("cli/values: a fraction is written as such or as a percentage, and is at most 1") {
+  CHECK(parseFraction("--epsilon", "0.5%") == 0.005);
+  CHECK(parseFraction("--epsilon", "0.005") == 0.005);
+  CHECK(parseFraction("--epsilon", "0") == 0.0);
+  CHECK(parseFraction("--epsilon", "100%") == 1.0);
+  CHECK(parseFraction("--epsilon", "1") == 1.0);
+  for (const char* text : {"", "%", "-1%", "-0.1", "1.5", "101%", "nan", "inf%", "0.5 %", "0,5%", "half"}) {
+    CAPTURE(text);
+    CHECK_THROWS_WITH_AS(parseFraction("--epsilon", text), doctest::Contains("0.5%"), Error);
+  }
+}
+
+TEST_CASE("cli/values: whole numbers keep to their range") {
+  CHECK(parseWhole("--vertices", "3000", 1, 5000) == 3000);
+  CHECK(parseWhole("--vertices", "+1", 1, 5000) == 1);
+  for (const char* text : {"0", "5001", "-1", "3.0", "3e3", "", "99999999999999999999", "3 "}) {
+    CAPTURE(text);
+    CHECK_THROWS_WITH_AS(parseWhole("--vertices", text, 1, 5000), doctest::Contains("1 to 5000"), Error);
+  }
+}
+
 }  // namespace sheaf::cli

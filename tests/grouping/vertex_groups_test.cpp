@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "grouping/planar_groups.h"
 #include "tests/grouping/shapes.h"
+#include "tests/temp_folder.h"
 
 namespace sheaf::grouping {
 
@@ -45,6 +46,37 @@ TEST_CASE("grouping/plane_sets: normals without a direction are refused") {
   CHECK_THROWS_WITH_AS(planesFromNormals(zero), doctest::Contains("normal 2"), Error);
   const DVec3 nan[] = {{std::numeric_limits<double>::quiet_NaN(), 0, 0}};
   CHECK_THROWS_AS(planesFromNormals(nan), Error);
+}
+
+TEST_CASE("grouping/plane_sets: a file has a normal on each line, comments and empty lines aside") {
+  const TempFolder folder;
+  folder.write("planes.txt", "# two planes\n\n1 0 0\r\n  0\t-2e0 0  # down\n");
+  const std::vector<PlaneFrame> planes = loadPlanes(folder.file("planes.txt"));
+  REQUIRE(planes.size() == 2);
+  CHECK(planes[0] == axisPlanes()[0]);
+  CHECK(planes[1].normal == Vec3(0, -1, 0));
+}
+
+TEST_CASE("grouping/plane_sets: a bad file is refused with file, line and reason") {
+  const TempFolder folder;
+  std::string many;
+  for (std::size_t i = 0; i <= kMaxFilePlanes; ++i) many += "1 0 0\n";
+  const std::vector<std::array<std::string, 2>> bad = {{"", "planes.txt: has no normals"},
+                                                       {"# nothing\n", "planes.txt: has no normals"},
+                                                       {"1 0 0\n1 0", "planes.txt:2: "},
+                                                       {"1 0 0 0", "planes.txt:1: "},
+                                                       {"0 0 0", "no direction"},
+                                                       {"nan 0 1", "no direction"},
+                                                       {"1e300 0 0", "no direction"},
+                                                       {"\n1 x 0", "planes.txt:2: "},
+                                                       {many, "planes.txt:256: more than "},
+                                                       {std::string("1 0 \0", 5), "planes.txt:1: "}};
+  for (const auto& [text, reason] : bad) {
+    CAPTURE(reason);
+    folder.write("planes.txt", text);
+    CHECK_THROWS_WITH_AS(loadPlanes(folder.file("planes.txt")), doctest::Contains(reason.c_str()), Error);
+  }
+  CHECK_THROWS_AS(loadPlanes(folder.file("none.txt")), Error);
 }
 
 TEST_CASE("grouping/vertex_groups: the snapped mesh differs in positions only") {

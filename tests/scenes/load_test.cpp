@@ -65,4 +65,22 @@ TEST_CASE("scenes/load: the crease angle decides which edges stay sharp") {
   CHECK(loadText("a.obj", bent, sharp).vertexCount() == 6);
 }
 
+TEST_CASE("scenes/load: what is not to be drawn gets no normals and may be points alone") {
+  ImportOptions plain;
+  plain.for_drawing = false;
+  const std::string bent = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 -1\nf 1 2 3\nf 2 1 4\n";
+  const mesh::Mesh obj = loadText("a.obj", bent, plain).meshes.at(0);
+  CHECK(obj.vertexCount() == 4);
+  CHECK(obj.normals.empty());
+  // Normals for some corners only do not count.
+  CHECK(loadText("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3\n", plain).meshes.at(0).normals.empty());
+  const mesh::Mesh off = loadText("a.off", "OFF\n2 0 0\n0 0 0\n1 2 3\n", plain).meshes.at(0);
+  CHECK(off.positions == std::vector<Vec3>{{0, 0, 0}, {1, 2, 3}});
+  const std::string points =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 "
+      "3\n";
+  CHECK(loadText("a.ply", points, plain).meshes.at(0).vertexCount() == 1);
+  CHECK(loadText("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", plain).meshes.at(0).normals.empty());
+}
+
 }  // namespace sheaf::scenes

@@ -1,0 +1,80 @@
+// cli/group_options: what `sheaf group` was asked to do.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "grouping/linear_groups.h"
+#include "grouping/planar_groups.h"
+
+namespace CLI {
+class App;
+}
+
+namespace sheaf::cli {
+
+/// How options and reports call the values of an enumeration.
+template <typename Value, std::size_t Count>
+using Names = std::array<std::pair<std::string_view, Value>, Count>;
+inline constexpr Names<grouping::GroupKind, 2> kMethodNames = {
+    {{"linear", grouping::GroupKind::kLine}, {"planar", grouping::GroupKind::kPlane}}};
+inline constexpr Names<grouping::Metric, 2> kMetricNames = {
+    {{"distance", grouping::Metric::kDistance}, {"quadric", grouping::Metric::kQuadric}}};
+inline constexpr Names<grouping::Limit, 2> kLimitNames = {
+    {{"safe", grouping::Limit::kSafe}, {"paper", grouping::Limit::kPaper}}};
+inline constexpr Names<grouping::TableKey, 4> kKeyNames = {{{"auto", grouping::TableKey::kAuto},
+                                                            {"union", grouping::TableKey::kUnion},
+                                                            {"sum", grouping::TableKey::kSum},
+                                                            {"dynamic", grouping::TableKey::kDynamic}}};
+
+template <typename Value, std::size_t Count>
+std::string_view nameOf(Value value, const Names<Value, Count>& names) {
+  for (const auto& [name, named] : names)
+    if (named == value) return name;
+  return {};
+}
+
+/// The options as they were written; absent ones are empty.
+struct GroupArguments {
+  using Text = std::optional<std::string>;
+  std::string input;
+  Text method;
+  Text metric;
+  Text limit;
+  Text epsilon;
+  Text planes;
+  Text key;
+  bool segment_only = false;
+  bool no_flips = false;
+  Text output;
+  Text bits;
+  Text snapped;
+  bool json = false;
+  bool quiet = false;
+};
+
+/// The same, understood and checked. Of `planar` and `linear` the one counts that `kind` says.
+struct GroupRequest {
+  std::string input;
+  grouping::GroupKind kind = grouping::GroupKind::kPlane;
+  grouping::PlanarOptions planar;
+  grouping::LinearOptions linear;
+  std::string plane_set;   ///< for the report: "3 axis planes"
+  std::string plane_file;  ///< from which planar.planes are to be read
+  std::string output;
+  int saved_bits = 0;  ///< of each saved parameter; 0 = exact
+  std::string snapped;
+  bool json = false;
+  bool quiet = false;
+};
+
+void addGroupOptions(CLI::App& command, const std::shared_ptr<GroupArguments>& arguments);
+
+/// Throws Error(kUsage) that names the option and the reason.
+GroupRequest understand(const GroupArguments& arguments);
+
+}  // namespace sheaf::cli

@@ -17,14 +17,10 @@
 #include "pipeline/renderer.h"
 #include "pipeline/timing_report.h"
 #include "raster/image_io.h"
-#include "raster/srgb.h"
 #include "scenes/camera.h"
 
 namespace sheaf::cli {
 namespace {
-
-// Light and neutral, so that dark and bright models stand out.
-constexpr Rgba8 kDefaultBackground{233, 235, 238};
 
 bool outputIsLinear(const RenderRequest& request) {
   return !request.output.empty() && request.output != "-" && raster::formatOf(request.output).linear;
@@ -34,17 +30,9 @@ bool outputIsLinear(const RenderRequest& request) {
 void checkBeforehand(const RenderRequest& request) {
   if (request.output == "-" && isatty(STDOUT_FILENO))
     throw Error(ErrorCode::kUsage, "-o -: standard output is a terminal; redirect it");
-  const bool is_file = !request.input.starts_with("builtin:");
   checkOutputs({{"-o", request.output}, {"--timings", request.timings_file}, {"--trace", request.trace_file}},
-               is_file ? std::vector{request.input} : std::vector<std::string>{});
+               inputFiles(request));
   if (!request.output.empty() && request.output != "-") raster::checkFormatAvailable(request.output);
-}
-
-Vec4 backgroundOf(const RenderRequest& request, const scenes::Scene& scene) {
-  if (!request.background && scene.background) return Vec4(*scene.background, 1.0F);
-  const Rgba8 c = request.background.value_or(kDefaultBackground);
-  const auto& linear = raster::srgbDecodeTable();
-  return {linear[c.r], linear[c.g], linear[c.b], static_cast<float>(c.a) / 255.0F};
 }
 
 /// From the reversed depth of a frame to the distance along the view, world units; infinity where nothing is.
@@ -91,13 +79,6 @@ void writeReports(const RenderRequest& request, const pipeline::RunTimes& run, i
     writeStdout(pipeline::formatTable(report));
 }
 
-scenes::Scene importScene(const RenderRequest& request) {
-  scenes::ImportOptions options;
-  options.z_up = request.view.z_up;
-  if (request.crease_angle_rad) options.crease_angle_rad = *request.crease_angle_rad;
-  return scenes::loadScene(request.input, options);
-}
-
 int runRender(const RenderRequest& request) {
   pipeline::RunTimes run;
   run.begin_ns = nowNs();
@@ -108,8 +89,7 @@ int runRender(const RenderRequest& request) {
   scenes::Scene scene;
   run.import = pipeline::timePhase([&] { scene = importScene(request); });
   if (!request.quiet) printWarnings(scene.warnings);
-  const double aspect = static_cast<double>(request.size.width) / request.size.height;
-  const scenes::Camera camera = chooseCamera(scene, request.view, aspect);
+  const scenes::Camera camera = chooseCamera(scene, request.view, request.aspect());
   if (scene.lights.empty()) scenes::addDefaultLights(scene, camera);
 
   pipeline::RenderSettings settings;

@@ -1,7 +1,7 @@
 // cli/view: the camera that the options ask for.
 #pragma once
 
-#include "cli/render_options.h"
+#include "cli/scene_options.h"
 #include "scenes/scene.h"
 
 namespace sheaf::cli {

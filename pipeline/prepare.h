@@ -14,6 +14,7 @@
 #include "core/task_pool.h"
 #include "grouping/patches.h"
 #include "grouping/vertex_groups.h"
+#include "grouping/vertex_runs.h"
 #include "raster/shade.h"
 #include "raster/texture.h"
 #include "scenes/scene.h"
@@ -22,8 +23,7 @@ namespace sheaf::pipeline {
 
 enum class Grouping : std::uint8_t { kNone, kLinear, kPlanar };
 
-/// How the parameters of grouped vertices are stored.
-enum class ParameterForm : std::uint8_t { k16Bit, kFloat };
+using grouping::ParameterForm;
 
 /// Which vertices of each mesh are moved onto common lines or planes, and how they are then drawn. Grouping is lossy:
 /// vertices move by up to epsilon.
@@ -44,21 +44,26 @@ struct PreparedMesh {
   std::vector<grouping::Patch> patches;
   std::array<std::vector<std::uint8_t>, 3> corners;
   std::vector<std::uint32_t> triangle_source;
-  std::array<std::vector<float>, 3> position;       ///< object space
+  grouping::VertexRuns vertices;  ///< what is transformed, object space
+  /// x, y, z by slot for shading, where it needs them and `vertices` does not have them so: solid textures, flat
+  /// normals.
+  std::array<std::vector<float>, 3> position;
   std::vector<std::uint32_t> normal;                ///< raster::packNormal(); empty = flat
   std::array<std::vector<float>, 2> texcoord;       ///< empty = none
   std::array<std::vector<std::uint32_t>, 2> color;  ///< raster::packColor(); empty = none
   Box3 bounds;
   std::uint64_t vertex_count = 0;  ///< slots that are not padding: border vertices count once per patch
   std::uint64_t triangle_count = 0;
-  /// What grouping did to the mesh; counts are 0 when it was not grouped. The quantisation of 16-bit parameters is not
-  /// in these figures.
+  /// What grouping did to the mesh as it is drawn; counts are 0 when it was not grouped.
   grouping::GroupingStats grouping;
   double extent = 0.0;  ///< longest edge of the mesh's box, the unit of the figures above
 
+  /// By slot; null where shading does not need it.
+  const float* shadingPosition(std::size_t axis) const;
+
   std::uint64_t bytes() const;
   /// Of that, what the geometry stage reads of vertices: coordinates, parameters, runs.
-  std::uint64_t vertexBytes() const;
+  std::uint64_t vertexBytes() const { return vertices.bytes(); }
 };
 
 /// Immutable and shared by all frames and threads. Does not refer to the scene that it was made from. Movable only:

@@ -32,7 +32,8 @@ struct ShadeMaterial {
 /// One instance: where its attributes are and how its normals turn. Attribute arrays are indexed by
 /// ShadeTriangle::vertex and readable at every index that a triangle names.
 struct Surface {
-  std::array<const float*, 3> position_object{};  ///< x, y, z; never null
+  std::array<const float*, 3> position_object{};  ///< x, y, z; null only if nothing reads them:
+                                                  ///< no solid texture, and normals that are not the triangle's own
   const std::uint32_t* normal = nullptr;          ///< packNormal(), object space; null = use the triangle's own
   std::array<const float*, 2> texcoord{};         ///< u, v; null = none
   std::array<const std::uint32_t*, 2> color{};    ///< packColor(): rg, ba; null = none

@@ -6,6 +6,9 @@
 
 namespace sheaf::cli {
 
+/// From the coordinates of a file to those of the scene.
+DVec3 worldFromFile(const DVec3& v, bool z_up);
+
 /// A camera with near and far set. Throws Error(kUsage) when the scene does not have what is asked for.
 scenes::Camera chooseCamera(const scenes::Scene& scene, const ViewRequest& request, double aspect);
 

@@ -46,6 +46,10 @@ PictureDifference differenceOf(const Frame& a, const Frame& b) {
 
 }  // namespace
 
+double maxDrawingDifference(Grouping method) {
+  return method == Grouping::kLinear ? 0.01 : 0.0;
+}
+
 double GeometricError::eliminated() const {
   return vertices > 0 ? static_cast<double>(grouped) / static_cast<double>(vertices) : 0.0;
 }
@@ -87,9 +91,9 @@ double bytesPerVertex(const PreparedScene& scene) {
 }
 
 bool Comparison::drawsRight() const {
-  return std::all_of(views.begin(), views.end(), [](const ViewComparison& view) {
-    return view.drawing.pixels.differing_pixels <= kMaxDrawingDifference;
-  });
+  const double allowed = maxDrawingDifference(grouping.method);
+  return std::all_of(views.begin(), views.end(),
+                     [&](const ViewComparison& view) { return view.drawing.pixels.differingFraction() <= allowed; });
 }
 
 Comparison compareGrouping(const scenes::Scene& scene, std::span<const scenes::Camera> cameras,

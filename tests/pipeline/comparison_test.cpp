@@ -85,11 +85,20 @@ TEST_CASE("pipeline/comparison: drawing and quality are two questions: what move
   CHECK(result.grouped != result.original);
 }
 
-TEST_CASE("pipeline/comparison: one pixel off in one view is not right") {
+TEST_CASE("pipeline/comparison: one pixel off in one view is not right by planes, more than a hundredth not by lines") {
   Comparison result;
   result.views.resize(3);
+  raster::ImageDifference& pixels = result.views[1].drawing.pixels;
+  pixels.width = pixels.height = 100;
+  result.grouping.method = Grouping::kPlanar;
   CHECK(result.drawsRight());
-  result.views[1].drawing.pixels.differing_pixels = 1;
+  pixels.differing_pixels = 1;
+  CHECK(!result.drawsRight());
+  result.grouping.method = Grouping::kLinear;
+  CHECK(result.drawsRight());
+  pixels.differing_pixels = 100;
+  CHECK(result.drawsRight());
+  pixels.differing_pixels = 101;
   CHECK(!result.drawsRight());
 }
 

@@ -101,32 +101,6 @@ double otherMs(const RunTimes& run) {
   return spreadOver(run.frames, frameOtherMs).median + toMs(std::max<std::int64_t>(0, outside_ns));
 }
 
-constexpr std::array<std::pair<const char*, std::uint64_t Counters::*>, 23> kCounterNames = {{
-    {"instances", &Counters::instances},
-    {"patches", &Counters::patches},
-    {"patches_outside", &Counters::patches_outside},
-    {"patches_back_facing", &Counters::patches_back_facing},
-    {"vertices_transformed", &Counters::vertices_transformed},
-    {"vertices_full", &Counters::vertices_full},
-    {"vertices_grouped", &Counters::vertices_grouped},
-    {"vertices_coded", &Counters::vertices_coded},
-    {"groups_tested", &Counters::groups_tested},
-    {"groups_outside", &Counters::groups_outside},
-    {"groups_inside", &Counters::groups_inside},
-    {"triangles_in", &Counters::triangles_in},
-    {"triangles_assembled", &Counters::triangles_assembled},
-    {"triangles_outside", &Counters::triangles_outside},
-    {"triangles_clipped", &Counters::triangles_clipped},
-    {"triangles_back_facing", &Counters::triangles_back_facing},
-    {"triangles_no_sample", &Counters::triangles_no_sample},
-    {"triangles_binned", &Counters::triangles_binned},
-    {"bin_entries", &Counters::bin_entries},
-    {"tiles", &Counters::tiles},
-    {"tiles_empty", &Counters::tiles_empty},
-    {"pixels_shaded", &Counters::pixels_shaded},
-    {"pixels_background", &Counters::pixels_background},
-}};
-
 std::string grouped(std::uint64_t n) {
   std::string digits = std::to_string(n);
   for (std::size_t i = digits.size(); i > 3;) digits.insert(i -= 3, ",");

@@ -130,16 +130,6 @@ Json differenceJson(const PictureDifference& difference) {
   return json;
 }
 
-Json groupingJson(const pipeline::GroupingOptions& options) {
-  Json json = {{"method", nameOf(options.method, kGroupingNames)},
-               {"metric", nameOf(options.metric, kMetricNames)},
-               {"limit", nullptr},
-               {"epsilon", options.epsilon},
-               {"parameters", nameOf(options.form, kParameterNames)}};
-  if (options.metric == grouping::Metric::kQuadric) json["limit"] = nameOf(options.limit, kLimitNames);
-  return json;
-}
-
 }  // namespace
 
 std::string comparisonText(const ComparisonReport& report) {

@@ -1,6 +1,7 @@
 #include "cli/grouping_options.h"
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include "cli/values.h"
 
@@ -39,6 +40,16 @@ std::string groupingText(const pipeline::GroupingOptions& options) {
     text += fmt::format(" with {} limit", nameOf(options.limit, kLimitNames));
   return text + fmt::format(", epsilon {:.4g} %, {} parameters", 100.0 * options.epsilon,
                             options.form == pipeline::ParameterForm::k16Bit ? "16-bit" : "float");
+}
+
+nlohmann::ordered_json groupingJson(const pipeline::GroupingOptions& options) {
+  nlohmann::ordered_json json = {{"method", nameOf(options.method, kGroupingNames)},
+                                 {"metric", nameOf(options.metric, kMetricNames)},
+                                 {"limit", nullptr},
+                                 {"epsilon", options.epsilon},
+                                 {"parameters", nameOf(options.form, kParameterNames)}};
+  if (options.metric == grouping::Metric::kQuadric) json["limit"] = nameOf(options.limit, kLimitNames);
+  return json;
 }
 
 }  // namespace sheaf::cli

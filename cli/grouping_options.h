@@ -1,6 +1,7 @@
 // cli/grouping_options: with which vertex groups a scene is drawn: the options that compare and bench share.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -38,5 +39,7 @@ pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments)
 
 /// `planar groups, distance metric, epsilon 0.5 %, 16-bit parameters`
 std::string groupingText(const pipeline::GroupingOptions& options);
+
+nlohmann::ordered_json groupingJson(const pipeline::GroupingOptions& options);
 
 }  // namespace sheaf::cli

@@ -59,15 +59,9 @@ void writeOutput(const RenderRequest& request, const scenes::Camera& camera, pip
   raster::writePicture(request.output, picture, pool);
 }
 
-void writeReports(const RenderRequest& request, const pipeline::RunTimes& run, int threads) {
+void writeReports(const RenderRequest& request, const pipeline::RunTimes& run, const TaskPool& pool) {
   if (!request.table && request.timings_file.empty() && request.trace_file.empty()) return;
-  const pipeline::RunContext context{.input = request.input,
-                                     .width = request.size.width,
-                                     .height = request.size.height,
-                                     .threads = threads,
-                                     .simd_target = simdTargets().front(),
-                                     .build = buildText(),
-                                     .cpu = cpuModel()};
+  const pipeline::RunContext context = contextOf(request, pool);
   const pipeline::TimingReport report = pipeline::makeTimingReport(run, context);
   if (!request.timings_file.empty()) writeFile(request.timings_file, pipeline::toJson(report));
   if (!request.trace_file.empty()) writeFile(request.trace_file, pipeline::toTraceJson(run, context));
@@ -119,7 +113,7 @@ int runRender(const RenderRequest& request) {
                    ? 0
                    : static_cast<std::uint64_t>(settings.width) * static_cast<std::uint64_t>(settings.height);
   run.end_ns = nowNs();
-  writeReports(request, run, pool.threadCount());
+  writeReports(request, run, pool);
   return 0;
 }
 

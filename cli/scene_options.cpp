@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/build_info.h"
 #include "core/error.h"
 #include "raster/srgb.h"
 #include "scenes/camera.h"
@@ -142,6 +143,18 @@ scenes::Scene importScene(const SceneRequest& request) {
   options.z_up = request.view.z_up;
   if (request.crease_angle_rad) options.crease_angle_rad = *request.crease_angle_rad;
   return scenes::loadScene(request.input, options);
+}
+
+pipeline::RunContext contextOf(const SceneRequest& request, const TaskPool& pool) {
+  return {.input = request.input,
+          .width = request.size.width,
+          .height = request.size.height,
+          .threads = pool.threadCount(),
+          .simd_target = simdTargets().front(),
+          .build = buildText(),
+          .revision = revisionText(),
+          .flags = flagsText(),
+          .cpu = cpuModel()};
 }
 
 Vec4 backgroundOf(const SceneRequest& request, const scenes::Scene& scene) {

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "cli/values.h"
+#include "core/task_pool.h"
+#include "pipeline/timing_report.h"
 #include "scenes/scene.h"
 
 namespace CLI {
@@ -76,6 +78,9 @@ bool isBuiltin(const std::string& input);
 std::vector<std::string> inputFiles(const SceneRequest& request);
 
 scenes::Scene importScene(const SceneRequest& request);
+
+/// For reports: what was run on what.
+pipeline::RunContext contextOf(const SceneRequest& request, const TaskPool& pool);
 
 /// Linear, straight alpha: what was asked for, else the scene's own, else light grey.
 Vec4 backgroundOf(const SceneRequest& request, const scenes::Scene& scene);

@@ -101,12 +101,6 @@ double otherMs(const RunTimes& run) {
   return spreadOver(run.frames, frameOtherMs).median + toMs(std::max<std::int64_t>(0, outside_ns));
 }
 
-std::string grouped(std::uint64_t n) {
-  std::string digits = std::to_string(n);
-  for (std::size_t i = digits.size(); i > 3;) digits.insert(i -= 3, ",");
-  return digits;
-}
-
 std::string rate(double per_s) {
   if (per_s <= 0.0) return "-";
   if (per_s >= 1e9) return fmt::format("{:.2f} G", per_s * 1e-9);
@@ -120,7 +114,7 @@ std::string countersTable(const Counters& counters) {
   for (const auto& [name, field] : kCounterNames) {
     std::string words = name;
     std::replace(words.begin(), words.end(), '_', ' ');
-    text += fmt::format("  {:<22}{:>15}\n", words, grouped(counters.*field));
+    text += fmt::format("  {:<22}{:>15}\n", words, withCommas(counters.*field));
   }
   return text;
 }
@@ -142,6 +136,8 @@ Json toJsonValue(const RunContext& context) {
           {"threads", context.threads},
           {"simd_target", context.simd_target},
           {"build", context.build},
+          {"revision", context.revision},
+          {"flags", context.flags},
           {"cpu", context.cpu}};
 }
 
@@ -180,6 +176,12 @@ class TraceWriter {
 };
 
 }  // namespace
+
+std::string withCommas(std::uint64_t n) {
+  std::string digits = std::to_string(n);
+  for (std::size_t i = digits.size(); i > 3;) digits.insert(i -= 3, 1, ',');
+  return digits;
+}
 
 std::int64_t processCpuNs() {
   timespec now{};
@@ -223,7 +225,7 @@ std::string formatTable(const TimingReport& report) {
   for (const StageRow& row : report.stages)
     text += fmt::format("{:<10}{:>10.3f}{}{:>6.1f} %{:>10.3f}{:>15}  {:<18}{:>11}\n", row.name, row.wall_ms.median,
                         range(ms(row.wall_ms.min), ms(row.wall_ms.max)), 100.0 * row.share, row.cpu_ms.median,
-                        grouped(row.items), row.item, rate(row.items_per_s));
+                        withCommas(row.items), row.item, rate(row.items_per_s));
   const double other_share = report.total_ms > 0.0 ? report.other_ms / report.total_ms : 0.0;
   text += fmt::format("{:<10}{:>10.3f}{}{:>6.1f} %{:>10}\n", "other", report.other_ms, range("", ""),
                       100.0 * other_share, "-");
@@ -243,6 +245,10 @@ std::string formatTable(const TimingReport& report) {
                       c.threads == 1 ? "" : "s", c.simd_target);
   text += fmt::format("build      {}\ncpu model  {}\n\n", c.build, c.cpu);
   return text + countersTable(report.counters);
+}
+
+std::string toJson(const RunContext& context) {
+  return dumped(toJsonValue(context), 2);
 }
 
 std::string toJson(const TimingReport& report) {

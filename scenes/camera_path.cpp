@@ -5,11 +5,15 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "scenes/camera.h"
 
 namespace sheaf::scenes {
 namespace {
+
+/// How far towards a surface the way inside goes: near enough to fill the picture, not yet within it.
+constexpr double kRoomBeforeSurface = 0.95;
 
 /// One bit for each of the six clip planes that the point lies beyond.
 std::uint8_t beyond(const DVec4& clip) {
@@ -22,6 +26,34 @@ Camera fittedFrom(const Scene& scene, const Box3& box, double azimuth_rad, const
   const ViewDirection direction = orbitView(azimuth_rad, options.elevation_rad);
   return fitClipPlanes(fitCamera(scene, direction, options.aspect, options.vertical_fov_rad, options.orthographic),
                        box);
+}
+
+/// Where origin + t * way, t > 0, first meets a triangle that is drawn as seen from there; infinite if it meets none.
+double firstSurface(const Scene& scene, const DVec3& origin, const DVec3& way) {
+  double first = std::numeric_limits<double>::infinity();
+  for (const Instance& instance : scene.instances) {
+    const mesh::Mesh& mesh = scene.meshes[instance.mesh];
+    const DMat4 object_from_world = glm::inverse(instance.world_from_object);
+    const DVec3 o(object_from_world * DVec4(origin, 1.0));
+    const DVec3 d(object_from_world * DVec4(way, 0.0));
+    for (const mesh::Triangle& t : mesh.triangles) {
+      const DVec3 a(mesh.positions[t[0]]);
+      const DVec3 ab = DVec3(mesh.positions[t[1]]) - a;
+      const DVec3 ac = DVec3(mesh.positions[t[2]]) - a;
+      // Solves o + s d = a + u ab + v ac by Cramer's rule. The determinant is positive where the front is seen, in
+      // object space, whatever the instance mirrors.
+      const DVec3 n = glm::cross(d, ac);
+      const double det = glm::dot(ab, n);
+      if (!(det > 0.0 || (det < 0.0 && scene.materials[instance.material].double_sided))) continue;
+      const DVec3 ao = o - a;
+      const DVec3 q = glm::cross(ao, ab);
+      const double u = glm::dot(ao, n) / det;
+      const double v = glm::dot(d, q) / det;
+      const double s = glm::dot(ac, q) / det;
+      if (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && s > 0.0) first = std::min(first, s);
+    }
+  }
+  return first;
 }
 
 }  // namespace
@@ -83,22 +115,25 @@ InsideView insideView(const Scene& scene, double share, const PathOptions& optio
   const Box3 box = boundsOf(scene);
   const Camera outside = fittedFrom(scene, box, options.azimuth_rad, options);
   const DVec3 way = outside.target - outside.eye;
-  const auto at = [&](double t) {
+  // Past the point opposite nothing is in view.
+  const double farthest = std::min(2.0, kRoomBeforeSurface * firstSurface(scene, outside.eye, way));
+  const auto at = [&](double t, double zoom) {
     Camera camera = outside;
     camera.near = camera.far = 0.0;
     camera.eye += t * way;
     camera.target += t * way;
-    return fitClipPlanes(camera, box);
+    camera.vertical_fov_rad *= 1.0 - zoom;
+    camera = fitClipPlanes(camera, box);
+    return InsideView{camera, shareInView(scene, camera, options.aspect)};
   };
-  // All is in view from 0, and nothing from the point opposite. Between them the share need not fall steadily, but it
-  // passes the wanted one.
+  // More is in view at 0, less at 1. Between them the share need not fall steadily, but it passes the wanted one.
+  const bool zooms = at(farthest, 0.0).share_in_view > share;
   double more = 0.0;
-  double less = 2.0;
+  double less = 1.0;
   InsideView view{outside, 1.0};
   for (int step = 0; step < 40 && std::abs(view.share_in_view - share) > 0.01 * share; ++step) {
     const double t = 0.5 * (more + less);
-    view.camera = at(t);
-    view.share_in_view = shareInView(scene, view.camera, options.aspect);
+    view = zooms ? at(farthest, t) : at(t * farthest, 0.0);
     (view.share_in_view > share ? more : less) = t;
   }
   return view;

@@ -35,8 +35,9 @@ struct InsideView {
   double share_in_view = 0.0;  ///< what was reached
 };
 
-/// A camera on the line from the fitted one through the scene, where `share` of the triangles are in view: found by
-/// halving, to a hundredth of `share` where the mesh allows it. share in (0, 1).
+/// A camera that has `share` of the triangles in view, to a hundredth of it where the mesh allows that: on the line
+/// from the fitted one into the scene, but not through a surface that faces it; if more is in view even there, through
+/// a longer lens. share in (0, 1).
 InsideView insideView(const Scene& scene, double share, const PathOptions& options);
 
 /// A JSON array of objects, as `sheaf info --json` lists cameras: eye, target (arrays of three numbers), and optionally

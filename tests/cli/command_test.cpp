@@ -18,8 +18,8 @@ TEST_CASE("cli/command: help goes to stdout and names every option, examples and
   const TempFolder folder;
   const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> expected = {
       {{"--help"},
-       {"render", "compare", "info", "group", "simplify", "scenes", "--version", "builtin:", "Examples", "Exit codes",
-        "70"}},
+       {"render", "compare", "bench", "info", "group", "simplify", "scenes", "--version", "builtin:", "Examples",
+        "Exit codes", "70"}},
       {{"render", "--help"},
        {"INPUT",
         "-o,",
@@ -51,6 +51,9 @@ TEST_CASE("cli/command: help goes to stdout and names every option, examples and
       {{"compare", "-h"},
        {"-o,", "--max-differing", "--max-error", "--min-psnr", "--json", "--grouping", "--metric", "--limit",
         "--epsilon", "--parameters", "--views", "--orbit", "--size", "Examples", "Exit codes"}},
+      {{"bench", "--help"},
+       {"INPUT", "--views", "--frames", "--grouping", "--metric", "--epsilon", "--threads", "--size", "--json",
+        "inside", "Examples", "Exit codes"}},
       {{"info", "--help"}, {"--json", "--quiet", "Exit codes"}},
       {{"group", "--help"},
        {"--method", "--metric", "--limit", "--epsilon", "--planes", "--key", "--segment-only", "--no-flips", "-o,",
@@ -71,6 +74,7 @@ TEST_CASE("cli/command: --version names version, compiler and SIMD targets") {
   const RunResult result = runSheaf(TempFolder(), {"--version"});
   CHECK(result.code == 0);
   CHECK(result.out.starts_with("sheaf "));
+  CHECK(result.out.find("revision") != std::string::npos);
   CHECK(result.out.find("SIMD targets") != std::string::npos);
   CHECK(result.err.empty());
 }
@@ -148,6 +152,17 @@ TEST_CASE("cli/command: wrong usage is one line on stderr, nothing on stdout, ex
       {"compare", "builtin:sphere", "--views", "c.json", "--fov", "50"},
       {"compare", "builtin:sphere", "--max-differing", "lots"},
       {"compare", "builtin:sphere", "--background", "puce"},
+      {"bench"},
+      {"bench", "builtin:sphere", "--frames", "0"},
+      {"bench", "builtin:sphere", "--frames", "2.5"},
+      {"bench", "builtin:sphere", "--views", "somewhere"},
+      {"bench", "builtin:sphere", "--views", "orbit", "--eye", "1,1,1"},
+      {"bench", "builtin:sphere", "--views", "fly", "--orthographic"},
+      {"bench", "builtin:sphere", "--grouping", "none"},
+      {"bench", "builtin:sphere", "--epsilon", "lots"},
+      {"bench", "builtin:sphere", "--threads", "0"},
+      {"bench", "builtin:sphere", "--simd", "MMX"},
+      {"bench", "builtin:sphere", "extra"},
       {"info"},
       {"scenes", "extra"},
   };
@@ -180,6 +195,8 @@ TEST_CASE("cli/command: bad input is one line that names the file, exit code 3, 
       {"info", "missing.ply"},
       {"compare", "missing.png", "empty.stl"},
       {"compare", "missing.ply"},
+      {"bench", "missing.ply"},
+      {"bench", "builtin:sphere", "--views", "missing.json"},
       {"compare", "builtin:sphere", "--views", "missing.json"},
       {"compare", "builtin:sphere", "-o", "no/such/folder/x.png"},
       {"compare", "cut.stl", "cut.stl"},

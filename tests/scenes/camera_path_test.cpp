@@ -95,7 +95,29 @@ TEST_CASE("scenes/camera_path: the wanted share of triangles is in view from ins
     CHECK(view.share_in_view == doctest::Approx(share).epsilon(0.02));
     CHECK(shareInView(scene, view.camera, kAspect) == view.share_in_view);
     CHECK(view.camera.near > 0.0);
+    CHECK(glm::length(view.camera.eye) > 1.0);
   }
+}
+
+TEST_CASE("scenes/camera_path: the way inside ends before a surface that faces it, and goes on with a longer lens") {
+  Scene scene = buildBuiltin("sphere?n=60");
+  InsideView view = insideView(scene, 0.002, usualOptions());
+  CHECK(view.share_in_view == doctest::Approx(0.002).epsilon(0.1));
+  CHECK(glm::length(view.camera.eye) > 1.0);
+  CHECK(view.camera.vertical_fov_rad < Camera{}.vertical_fov_rad);
+  // Turned inside out it shows nothing from without, and is entered; mirrored as well it is as it was.
+  for (mesh::Triangle& t : scene.meshes[0].triangles) std::swap(t[1], t[2]);
+  view = insideView(scene, 0.05, usualOptions());
+  CHECK(glm::length(view.camera.eye) < 1.0);
+  CHECK(view.camera.vertical_fov_rad == Camera{}.vertical_fov_rad);
+  for (mesh::Triangle& t : scene.meshes[0].triangles) std::swap(t[1], t[2]);
+  scene.instances[0].world_from_object = DMat4(-1.0);
+  scene.instances[0].world_from_object[3] = DVec4(0.0, 0.0, 0.0, 1.0);
+  CHECK(glm::length(insideView(scene, 0.05, usualOptions()).camera.eye) > 1.0);
+  scene.instances[0].world_from_object = DMat4(1.0);
+  for (mesh::Triangle& t : scene.meshes[0].triangles) std::swap(t[1], t[2]);
+  scene.materials[0].double_sided = true;
+  CHECK(glm::length(insideView(scene, 0.05, usualOptions()).camera.eye) > 1.0);
 }
 
 TEST_CASE("scenes/camera_path: where the mesh has too few triangles for a share, what was reached is said") {

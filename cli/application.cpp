@@ -50,6 +50,7 @@ int parseAndRun(int argc, char** argv) {
   app.require_subcommand(0, 1);
   addRenderCommand(app, run);
   addCompareCommand(app, run);
+  addBenchCommand(app, run);
   addInfoCommand(app, run);
   addGroupCommand(app, run);
   addSimplifyCommand(app, run);
@@ -71,7 +72,7 @@ int parseAndRun(int argc, char** argv) {
   }
   if (!run)
     throw Error(ErrorCode::kUsage,
-                "a subcommand is missing: render, compare, info, group, simplify or scenes (see sheaf --help)");
+                "a subcommand is missing: render, compare, bench, info, group, simplify or scenes (see sheaf --help)");
   return run();
 }
 

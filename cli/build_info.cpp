@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "core/error.h"
+#include "sheaf_revision.h"
 
 namespace sheaf::cli {
 namespace {
@@ -24,6 +25,14 @@ std::string compilerText() {
 
 std::string buildText() {
   return fmt::format("sheaf {}, {}, {}", SHEAF_VERSION, compilerText(), SHEAF_BUILD_TYPE);
+}
+
+std::string revisionText() {
+  return SHEAF_REVISION;
+}
+
+std::string flagsText() {
+  return SHEAF_FLAGS;
 }
 
 std::string cpuModel() {
@@ -48,8 +57,8 @@ void forceSimdTarget(const std::string& name) {
 }
 
 std::string versionText() {
-  return fmt::format("sheaf {}\ncompiler: {}, {}\nSIMD targets here: {}\n", SHEAF_VERSION, compilerText(),
-                     SHEAF_BUILD_TYPE, fmt::join(simdTargets(), ", "));
+  return fmt::format("sheaf {}, revision {}\ncompiler: {}, {}, {}\nSIMD targets here: {}\n", SHEAF_VERSION,
+                     revisionText(), compilerText(), SHEAF_BUILD_TYPE, flagsText(), fmt::join(simdTargets(), ", "));
 }
 
 }  // namespace sheaf::cli

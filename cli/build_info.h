@@ -9,6 +9,12 @@ namespace sheaf::cli {
 /// `sheaf 0.1.0, GCC 12.2.0, Release`
 std::string buildText();
 
+/// What `git describe` says of the sources, `-dirty` if they were changed; "unknown" without git.
+std::string revisionText();
+
+/// The compiler's flags.
+std::string flagsText();
+
 /// The model name that the system gives, or "unknown".
 std::string cpuModel();
 

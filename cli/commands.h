@@ -19,6 +19,7 @@ using Run = std::function<int()>;
 
 void addRenderCommand(CLI::App& app, Run& run);
 void addCompareCommand(CLI::App& app, Run& run);
+void addBenchCommand(CLI::App& app, Run& run);
 void addInfoCommand(CLI::App& app, Run& run);
 void addGroupCommand(CLI::App& app, Run& run);
 void addSimplifyCommand(CLI::App& app, Run& run);

@@ -1,15 +1,18 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <string_view>
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/compare_limits.h"
+#include "cli/compare_scene.h"
 #include "cli/console.h"
+#include "cli/difference_report.h"
 #include "cli/output.h"
-#include "cli/values.h"
 #include "core/error.h"
 #include "raster/image_compare.h"
 #include "raster/image_io.h"
@@ -20,44 +23,36 @@ namespace {
 using Json = nlohmann::ordered_json;
 using raster::ImageDifference;
 
-struct CompareOptions {
-  std::string a;
-  std::string b;
-  std::optional<std::string> heat_map;
-  std::optional<std::string> max_differing;
-  std::optional<std::string> max_error;
-  std::optional<std::string> min_psnr;
+constexpr const char* kFooter =
+    "One INPUT, a mesh file or builtin:NAME, is drawn with vertex groups and answers two questions: is grouped "
+    "drawing\n"
+    "right (against the snapped mesh drawn ungrouped: with planar groups not a pixel may differ, with linear ones 1 "
+    "%),\n"
+    "and what does grouping cost in quality (against the original mesh). The limits are about quality, in every view;\n"
+    "without one, only drawing decides. The output has original, grouped and heat map side by side, of the view with "
+    "the\n"
+    "greatest RMS error.\n"
+    "\n"
+    "Two images are compared with each other: without a limit they must be equal, and the output is the heat map.\n"
+    "Linear floating-point images are compared as 8-bit sRGB. In heat maps equal pixels are dark grey, differing ones\n"
+    "go from blue (1) to yellow (255).\n"
+    "\n"
+    "Exit code 1: a limit is passed, or grouped drawing is not right.\n"
+    "\n"
+    "Examples:\n"
+    "  sheaf compare bunny.ply -o bunny.png\n"
+    "  sheaf compare model.glb --views orbit:12 --epsilon 1% --metric quadric --max-differing 2% --json\n"
+    "  sheaf compare expected.png actual.png\n"
+    "  sheaf compare a.png b.png -o heat.png --max-differing 0.02% --max-error 3\n"
+    "\n";
+
+struct CompareArguments {
+  SceneCompareArguments scene;
+  std::optional<std::string> second;
+  std::optional<std::string> output;
+  LimitArguments limits;
   bool json = false;
 };
-
-/// What the pictures have to keep to; a limit that is not set does not count.
-struct Limits {
-  std::optional<PixelLimit> differing;
-  std::optional<double> max_error;
-  std::optional<double> min_psnr_db;
-};
-
-Limits limitsOf(const CompareOptions& options) {
-  Limits limits;
-  if (options.max_differing) limits.differing = parsePixelLimit("--max-differing", *options.max_differing);
-  if (options.max_error) limits.max_error = parseNumber("--max-error", *options.max_error, 0.0, 255.0);
-  if (options.min_psnr) limits.min_psnr_db = parseNumber("--min-psnr", *options.min_psnr, 0.0, 1000.0);
-  if (!limits.differing && !limits.max_error && !limits.min_psnr_db) limits.differing = PixelLimit{};
-  return limits;
-}
-
-/// The options whose limit is passed.
-std::vector<std::string> beyond(const Limits& limits, const ImageDifference& difference) {
-  std::vector<std::string> options;
-  if (limits.differing) {
-    const double found = limits.differing->percent ? 100.0 * difference.differingFraction()
-                                                   : static_cast<double>(difference.differing_pixels);
-    if (found > limits.differing->value) options.emplace_back("--max-differing");
-  }
-  if (limits.max_error && difference.max_error > *limits.max_error) options.emplace_back("--max-error");
-  if (limits.min_psnr_db && difference.psnr_db < *limits.min_psnr_db) options.emplace_back("--min-psnr");
-  return options;
-}
 
 std::string reportText(const ImageDifference& d, const std::vector<std::string>& passed) {
   std::string text = fmt::format("differing pixels  {} of {} ({:.4g} %)\n", d.differing_pixels,
@@ -80,77 +75,88 @@ std::string reportText(const ImageDifference& d, const std::vector<std::string>&
 }
 
 std::string reportJson(const ImageDifference& d, const std::vector<std::string>& passed) {
-  Json json = {{"width", d.width},
-               {"height", d.height},
-               {"equal", d.differing_pixels == 0},
-               {"within_limits", passed.empty()},
-               {"beyond", passed},
-               {"differing_pixels", d.differing_pixels},
-               {"differing_fraction", d.differingFraction()},
-               {"max_error", d.max_error},
-               {"max_error_rgba", d.max_error_channel},
-               {"rms", d.rms},
-               {"psnr_db", nullptr},
-               {"first", nullptr},
-               {"box", nullptr}};
-  if (!std::isinf(d.psnr_db)) json["psnr_db"] = d.psnr_db;  // JSON knows no infinity: null when equal
-  if (d.first) {
-    json["first"] = {d.first->x, d.first->y};
-    json["box"] = {{"min", {d.box_min.x, d.box_min.y}}, {"max", {d.box_max.x, d.box_max.y}}};
-  }
+  Json json = {{"width", d.width}, {"height", d.height}, {"within_limits", passed.empty()}, {"beyond", passed}};
+  json.update(toJson(d));
   return json.dump(2) + "\n";
 }
 
-void checkHeatMap(const CompareOptions& options) {
-  const std::string& path = *options.heat_map;
+void checkPictureOutput(const std::string& path) {
   if (raster::formatOf(path).linear)
     throw Error(ErrorCode::kUsage, fmt::format("-o {}: a heat map has 8-bit colours; write it as .png", path));
-  raster::checkFormatAvailable(path);
-  checkOutputs({{"-o", path}}, {options.a, options.b});
 }
 
-int runCompare(const CompareOptions& options) {
-  const Limits limits = limitsOf(options);
-  if (options.heat_map) checkHeatMap(options);
-  const Image8 a = raster::readImage(options.a);
-  const Image8 b = raster::readImage(options.b);
+int compareImages(const std::string& path_a, const std::string& path_b, const std::string& output, Limits limits,
+                  bool json) {
+  if (limits.none()) limits.differing = PixelLimit{};
+  checkOutputs({{"-o", output}}, {path_a, path_b});
+  if (!output.empty()) raster::checkFormatAvailable(output);
+  const Image8 a = raster::readImage(path_a);
+  const Image8 b = raster::readImage(path_b);
   if (a.width() != b.width() || a.height() != b.height())
-    throw Error(ErrorCode::kBadInput, fmt::format("{}: is {}x{} pixels, {} is {}x{}", options.a, a.width(), a.height(),
-                                                  options.b, b.width(), b.height()));
+    throw Error(ErrorCode::kBadInput, fmt::format("{}: is {}x{} pixels, {} is {}x{}", path_a, a.width(), a.height(),
+                                                  path_b, b.width(), b.height()));
   const ImageDifference difference = raster::compareImages(a, b);
-  if (options.heat_map) {
+  if (!output.empty()) {
     const Image8 map = raster::heatMap(a, b);
     TaskPool pool;
-    raster::writePicture(*options.heat_map, {.srgb = &map}, pool);
+    raster::writePicture(output, {.srgb = &map}, pool);
   }
   const std::vector<std::string> passed = beyond(limits, difference);
-  writeStdout(options.json ? reportJson(difference, passed) : reportText(difference, passed));
+  writeStdout(json ? reportJson(difference, passed) : reportText(difference, passed));
   return passed.empty() ? 0 : 1;
+}
+
+/// Two images are not drawn: options about drawing would be without effect.
+void refuseSceneOptions(const CLI::App& command) {
+  constexpr std::string_view kForImages[] = {"INPUT",       "IMAGE",      "--output", "--max-differing",
+                                             "--max-error", "--min-psnr", "--json"};
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string name = option->get_positional() ? option->get_name(true) : "--" + option->get_lnames().front();
+    if (option->count() > 0 && std::find(std::begin(kForImages), std::end(kForImages), name) == std::end(kForImages))
+      throw Error(ErrorCode::kUsage, fmt::format("{} is for comparing one INPUT, not two images", name));
+  }
+}
+
+int runCompare(const CompareArguments& arguments, const CLI::App& command) {
+  if (arguments.output && arguments.output->empty())
+    throw Error(ErrorCode::kUsage, "-o: the name of the file is empty");
+  const std::string output = arguments.output.value_or("");
+  if (!output.empty()) checkPictureOutput(output);
+  const Limits limits = understandLimits(arguments.limits);
+  if (arguments.second) {
+    refuseSceneOptions(command);
+    return compareImages(arguments.scene.input, *arguments.second, output, limits, arguments.json);
+  }
+  if (raster::hasPictureExtension(arguments.scene.input))
+    throw Error(ErrorCode::kUsage, fmt::format("{}: the image to compare it with is missing", arguments.scene.input));
+  SceneCompareRequest request;
+  understandSceneCompare(arguments.scene, request);
+  request.limits = limits;
+  request.output = output;
+  request.json = arguments.json;
+  return compareScene(request);
 }
 
 }  // namespace
 
 void addCompareCommand(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand("compare", "Compare two images of the same size");
-  const auto options = std::make_shared<CompareOptions>();
-  command->add_option("A", options->a, "An image: PNG, JPEG, EXR, TIFF, HDR ...")->required();
-  command->add_option("B", options->b, "Another image")->required();
+  CLI::App* command =
+      app.add_subcommand("compare", "Compare a scene drawn with vertex groups and without, or two images");
+  const auto arguments = std::make_shared<CompareArguments>();
+  CompareArguments& a = *arguments;
+  command->add_option("INPUT", a.scene.input, "A mesh file or builtin:NAME; or an image: PNG, JPEG, EXR, TIFF, HDR ...")
+      ->required();
+  command->add_option("IMAGE", a.second, "The image to compare it with");
   command
-      ->add_option("-o,--output", options->heat_map,
-                   "Write a heat map: equal pixels dark grey, differing ones blue (1) to yellow (255)")
+      ->add_option("-o,--output", a.output,
+                   "Write a picture: original, grouped and heat map side by side, or\nthe heat map of two images")
       ->type_name("FILE");
-  command->add_option("--max-differing", options->max_differing, "So many pixels may differ")->type_name("N|P%");
-  command->add_option("--max-error", options->max_error, "So far may a channel be off, 0 to 255")->type_name("E");
-  command->add_option("--min-psnr", options->min_psnr, "The peak signal-to-noise ratio must be at least this")
-      ->type_name("DB");
-  command->add_flag("--json", options->json, "Report as JSON");
-  command->footer(std::string("Without a limit, images must be equal. With limits, only those given count. Linear\n"
-                              "floating-point images are compared as 8-bit sRGB.\n\n"
-                              "Examples:\n"
-                              "  sheaf compare expected.png actual.png\n"
-                              "  sheaf compare a.png b.png -o heat.png --max-differing 0.02% --max-error 3\n\n") +
-                  kExitCodes);
-  command->callback([options, &run] { run = [options] { return runCompare(*options); }; });
+  addLimitOptions(*command, a.limits);
+  command->add_flag("--json", a.json, "Report as JSON");
+  addSceneCompareOptions(*command, a.scene);
+  command->footer(std::string(kFooter) + kExitCodes);
+  command->callback(
+      [arguments, command, &run] { run = [arguments, command] { return runCompare(*arguments, *command); }; });
 }
 
 }  // namespace sheaf::cli

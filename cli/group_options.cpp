@@ -38,16 +38,6 @@ constexpr const char* kFooter =
   throw Error(ErrorCode::kUsage, reason);
 }
 
-template <typename Value, std::size_t Count>
-Value choose(std::string_view option, const std::string& text, const Names<Value, Count>& choices) {
-  std::string names;
-  for (const auto& [name, value] : choices) {
-    if (name == text) return value;
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
-  }
-  refuse(fmt::format("{} {}: expected one of {}", option, text, names));
-}
-
 /// What only one method or metric knows.
 void refuseMismatches(const GroupArguments& arguments, GroupKind kind, Metric metric) {
   if (kind == GroupKind::kLine) {

@@ -1,13 +1,12 @@
 // cli/group_options: what `sheaf group` was asked to do.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
-#include <utility>
 
+#include "cli/grouping_options.h"
+#include "cli/names.h"
 #include "grouping/linear_groups.h"
 #include "grouping/planar_groups.h"
 
@@ -17,26 +16,12 @@ class App;
 
 namespace sheaf::cli {
 
-/// How options and reports call the values of an enumeration.
-template <typename Value, std::size_t Count>
-using Names = std::array<std::pair<std::string_view, Value>, Count>;
 inline constexpr Names<grouping::GroupKind, 2> kMethodNames = {
     {{"linear", grouping::GroupKind::kLine}, {"planar", grouping::GroupKind::kPlane}}};
-inline constexpr Names<grouping::Metric, 2> kMetricNames = {
-    {{"distance", grouping::Metric::kDistance}, {"quadric", grouping::Metric::kQuadric}}};
-inline constexpr Names<grouping::Limit, 2> kLimitNames = {
-    {{"safe", grouping::Limit::kSafe}, {"paper", grouping::Limit::kPaper}}};
 inline constexpr Names<grouping::TableKey, 4> kKeyNames = {{{"auto", grouping::TableKey::kAuto},
                                                             {"union", grouping::TableKey::kUnion},
                                                             {"sum", grouping::TableKey::kSum},
                                                             {"dynamic", grouping::TableKey::kDynamic}}};
-
-template <typename Value, std::size_t Count>
-std::string_view nameOf(Value value, const Names<Value, Count>& names) {
-  for (const auto& [name, named] : names)
-    if (named == value) return name;
-  return {};
-}
 
 /// The options as they were written; absent ones are empty.
 struct GroupArguments {

@@ -17,14 +17,10 @@
 #include "pipeline/renderer.h"
 #include "pipeline/timing_report.h"
 #include "raster/image_io.h"
-#include "raster/srgb.h"
 #include "scenes/camera.h"
 
 namespace sheaf::cli {
 namespace {
-
-// Light and neutral, so that dark and bright models stand out.
-constexpr Rgba8 kDefaultBackground{233, 235, 238};
 
 bool outputIsLinear(const RenderRequest& request) {
   return !request.output.empty() && request.output != "-" && raster::formatOf(request.output).linear;
@@ -34,17 +30,9 @@ bool outputIsLinear(const RenderRequest& request) {
 void checkBeforehand(const RenderRequest& request) {
   if (request.output == "-" && isatty(STDOUT_FILENO))
     throw Error(ErrorCode::kUsage, "-o -: standard output is a terminal; redirect it");
-  const bool is_file = !request.input.starts_with("builtin:");
   checkOutputs({{"-o", request.output}, {"--timings", request.timings_file}, {"--trace", request.trace_file}},
-               is_file ? std::vector{request.input} : std::vector<std::string>{});
+               inputFiles(request));
   if (!request.output.empty() && request.output != "-") raster::checkFormatAvailable(request.output);
-}
-
-Vec4 backgroundOf(const RenderRequest& request, const scenes::Scene& scene) {
-  if (!request.background && scene.background) return Vec4(*scene.background, 1.0F);
-  const Rgba8 c = request.background.value_or(kDefaultBackground);
-  const auto& linear = raster::srgbDecodeTable();
-  return {linear[c.r], linear[c.g], linear[c.b], static_cast<float>(c.a) / 255.0F};
 }
 
 /// From the reversed depth of a frame to the distance along the view, world units; infinity where nothing is.
@@ -71,15 +59,9 @@ void writeOutput(const RenderRequest& request, const scenes::Camera& camera, pip
   raster::writePicture(request.output, picture, pool);
 }
 
-void writeReports(const RenderRequest& request, const pipeline::RunTimes& run, int threads) {
+void writeReports(const RenderRequest& request, const pipeline::RunTimes& run, const TaskPool& pool) {
   if (!request.table && request.timings_file.empty() && request.trace_file.empty()) return;
-  const pipeline::RunContext context{.input = request.input,
-                                     .width = request.size.width,
-                                     .height = request.size.height,
-                                     .threads = threads,
-                                     .simd_target = simdTargets().front(),
-                                     .build = buildText(),
-                                     .cpu = cpuModel()};
+  const pipeline::RunContext context = contextOf(request, pool);
   const pipeline::TimingReport report = pipeline::makeTimingReport(run, context);
   if (!request.timings_file.empty()) writeFile(request.timings_file, pipeline::toJson(report));
   if (!request.trace_file.empty()) writeFile(request.trace_file, pipeline::toTraceJson(run, context));
@@ -89,13 +71,6 @@ void writeReports(const RenderRequest& request, const pipeline::RunTimes& run, i
     fmt::print(stderr, "{}", pipeline::formatTable(report));
   else
     writeStdout(pipeline::formatTable(report));
-}
-
-scenes::Scene importScene(const RenderRequest& request) {
-  scenes::ImportOptions options;
-  options.z_up = request.view.z_up;
-  if (request.crease_angle_rad) options.crease_angle_rad = *request.crease_angle_rad;
-  return scenes::loadScene(request.input, options);
 }
 
 int runRender(const RenderRequest& request) {
@@ -108,8 +83,7 @@ int runRender(const RenderRequest& request) {
   scenes::Scene scene;
   run.import = pipeline::timePhase([&] { scene = importScene(request); });
   if (!request.quiet) printWarnings(scene.warnings);
-  const double aspect = static_cast<double>(request.size.width) / request.size.height;
-  const scenes::Camera camera = chooseCamera(scene, request.view, aspect);
+  const scenes::Camera camera = chooseCamera(scene, request.view, request.aspect());
   if (scene.lights.empty()) scenes::addDefaultLights(scene, camera);
 
   pipeline::RenderSettings settings;
@@ -139,7 +113,7 @@ int runRender(const RenderRequest& request) {
                    ? 0
                    : static_cast<std::uint64_t>(settings.width) * static_cast<std::uint64_t>(settings.height);
   run.end_ns = nowNs();
-  writeReports(request, run, pool.threadCount());
+  writeReports(request, run, pool);
   return 0;
 }
 

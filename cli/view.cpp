@@ -16,10 +16,6 @@ using scenes::Scene;
 
 constexpr double kDefaultFovRad = Camera{}.vertical_fov_rad;
 
-DVec3 worldFromFile(const DVec3& v, bool z_up) {
-  return z_up ? DVec3(v.x, v.z, -v.y) : v;
-}
-
 const Camera& fileCamera(const Scene& scene, const std::string& wanted) {
   for (const Camera& camera : scene.cameras)
     if (camera.name == wanted) return camera;
@@ -75,6 +71,10 @@ Camera unfittedCamera(const Scene& scene, const ViewRequest& request, double asp
 }
 
 }  // namespace
+
+DVec3 worldFromFile(const DVec3& v, bool z_up) {
+  return z_up ? DVec3(v.x, v.z, -v.y) : v;
+}
 
 Camera chooseCamera(const Scene& scene, const ViewRequest& request, double aspect) {
   return scenes::fitClipPlanes(unfittedCamera(scene, request, aspect), boundsOf(scene));

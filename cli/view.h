@@ -1,10 +1,13 @@
 // cli/view: the camera that the options ask for.
 #pragma once
 
-#include "cli/render_options.h"
+#include "cli/scene_options.h"
 #include "scenes/scene.h"
 
 namespace sheaf::cli {
+
+/// From the coordinates of a file to those of the scene.
+DVec3 worldFromFile(const DVec3& v, bool z_up);
 
 /// A camera with near and far set. Throws Error(kUsage) when the scene does not have what is asked for.
 scenes::Camera chooseCamera(const scenes::Scene& scene, const ViewRequest& request, double aspect);

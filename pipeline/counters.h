@@ -1,7 +1,9 @@
 // pipeline/counters: how much work a frame was. Beside every time stands what was done in it.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <utility>
 
 namespace sheaf::pipeline {
 
@@ -32,5 +34,32 @@ struct Counters {
 
   Counters& operator+=(const Counters& other);
 };
+
+/// Every counter under the name that reports give it.
+inline constexpr std::array<std::pair<const char*, std::uint64_t Counters::*>, 23> kCounterNames = {{
+    {"instances", &Counters::instances},
+    {"patches", &Counters::patches},
+    {"patches_outside", &Counters::patches_outside},
+    {"patches_back_facing", &Counters::patches_back_facing},
+    {"vertices_transformed", &Counters::vertices_transformed},
+    {"vertices_full", &Counters::vertices_full},
+    {"vertices_grouped", &Counters::vertices_grouped},
+    {"vertices_coded", &Counters::vertices_coded},
+    {"groups_tested", &Counters::groups_tested},
+    {"groups_outside", &Counters::groups_outside},
+    {"groups_inside", &Counters::groups_inside},
+    {"triangles_in", &Counters::triangles_in},
+    {"triangles_assembled", &Counters::triangles_assembled},
+    {"triangles_outside", &Counters::triangles_outside},
+    {"triangles_clipped", &Counters::triangles_clipped},
+    {"triangles_back_facing", &Counters::triangles_back_facing},
+    {"triangles_no_sample", &Counters::triangles_no_sample},
+    {"triangles_binned", &Counters::triangles_binned},
+    {"bin_entries", &Counters::bin_entries},
+    {"tiles", &Counters::tiles},
+    {"tiles_empty", &Counters::tiles_empty},
+    {"pixels_shaded", &Counters::pixels_shaded},
+    {"pixels_background", &Counters::pixels_background},
+}};
 
 }  // namespace sheaf::pipeline

@@ -101,38 +101,6 @@ double otherMs(const RunTimes& run) {
   return spreadOver(run.frames, frameOtherMs).median + toMs(std::max<std::int64_t>(0, outside_ns));
 }
 
-constexpr std::array<std::pair<const char*, std::uint64_t Counters::*>, 23> kCounterNames = {{
-    {"instances", &Counters::instances},
-    {"patches", &Counters::patches},
-    {"patches_outside", &Counters::patches_outside},
-    {"patches_back_facing", &Counters::patches_back_facing},
-    {"vertices_transformed", &Counters::vertices_transformed},
-    {"vertices_full", &Counters::vertices_full},
-    {"vertices_grouped", &Counters::vertices_grouped},
-    {"vertices_coded", &Counters::vertices_coded},
-    {"groups_tested", &Counters::groups_tested},
-    {"groups_outside", &Counters::groups_outside},
-    {"groups_inside", &Counters::groups_inside},
-    {"triangles_in", &Counters::triangles_in},
-    {"triangles_assembled", &Counters::triangles_assembled},
-    {"triangles_outside", &Counters::triangles_outside},
-    {"triangles_clipped", &Counters::triangles_clipped},
-    {"triangles_back_facing", &Counters::triangles_back_facing},
-    {"triangles_no_sample", &Counters::triangles_no_sample},
-    {"triangles_binned", &Counters::triangles_binned},
-    {"bin_entries", &Counters::bin_entries},
-    {"tiles", &Counters::tiles},
-    {"tiles_empty", &Counters::tiles_empty},
-    {"pixels_shaded", &Counters::pixels_shaded},
-    {"pixels_background", &Counters::pixels_background},
-}};
-
-std::string grouped(std::uint64_t n) {
-  std::string digits = std::to_string(n);
-  for (std::size_t i = digits.size(); i > 3;) digits.insert(i -= 3, ",");
-  return digits;
-}
-
 std::string rate(double per_s) {
   if (per_s <= 0.0) return "-";
   if (per_s >= 1e9) return fmt::format("{:.2f} G", per_s * 1e-9);
@@ -146,7 +114,7 @@ std::string countersTable(const Counters& counters) {
   for (const auto& [name, field] : kCounterNames) {
     std::string words = name;
     std::replace(words.begin(), words.end(), '_', ' ');
-    text += fmt::format("  {:<22}{:>15}\n", words, grouped(counters.*field));
+    text += fmt::format("  {:<22}{:>15}\n", words, withCommas(counters.*field));
   }
   return text;
 }
@@ -168,6 +136,8 @@ Json toJsonValue(const RunContext& context) {
           {"threads", context.threads},
           {"simd_target", context.simd_target},
           {"build", context.build},
+          {"revision", context.revision},
+          {"flags", context.flags},
           {"cpu", context.cpu}};
 }
 
@@ -206,6 +176,12 @@ class TraceWriter {
 };
 
 }  // namespace
+
+std::string withCommas(std::uint64_t n) {
+  std::string digits = std::to_string(n);
+  for (std::size_t i = digits.size(); i > 3;) digits.insert(i -= 3, 1, ',');
+  return digits;
+}
 
 std::int64_t processCpuNs() {
   timespec now{};
@@ -249,7 +225,7 @@ std::string formatTable(const TimingReport& report) {
   for (const StageRow& row : report.stages)
     text += fmt::format("{:<10}{:>10.3f}{}{:>6.1f} %{:>10.3f}{:>15}  {:<18}{:>11}\n", row.name, row.wall_ms.median,
                         range(ms(row.wall_ms.min), ms(row.wall_ms.max)), 100.0 * row.share, row.cpu_ms.median,
-                        grouped(row.items), row.item, rate(row.items_per_s));
+                        withCommas(row.items), row.item, rate(row.items_per_s));
   const double other_share = report.total_ms > 0.0 ? report.other_ms / report.total_ms : 0.0;
   text += fmt::format("{:<10}{:>10.3f}{}{:>6.1f} %{:>10}\n", "other", report.other_ms, range("", ""),
                       100.0 * other_share, "-");
@@ -269,6 +245,10 @@ std::string formatTable(const TimingReport& report) {
                       c.threads == 1 ? "" : "s", c.simd_target);
   text += fmt::format("build      {}\ncpu model  {}\n\n", c.build, c.cpu);
   return text + countersTable(report.counters);
+}
+
+std::string toJson(const RunContext& context) {
+  return dumped(toJsonValue(context), 2);
 }
 
 std::string toJson(const TimingReport& report) {

@@ -69,6 +69,8 @@ struct RunContext {
   int threads = 0;
   std::string simd_target;  ///< "AVX2"
   std::string build;        ///< version, compiler, kind of build
+  std::string revision;     ///< of the sources
+  std::string flags;        ///< of the compiler
   std::string cpu;          ///< model name
 };
 
@@ -102,10 +104,14 @@ struct TimingReport {
 
 TimingReport makeTimingReport(const RunTimes& run, RunContext context);
 
+/// `1,234,567`, as the tables have whole numbers.
+std::string withCommas(std::uint64_t n);
+
 /// An aligned table for people, ending in a newline.
 std::string formatTable(const TimingReport& report);
 
-/// The report as a JSON object; times in milliseconds.
+/// As JSON objects; times in milliseconds.
+std::string toJson(const RunContext& context);
 std::string toJson(const TimingReport& report);
 
 /// Chrome trace event format, which Perfetto opens: a track for the main thread with import, prepare, each frame and

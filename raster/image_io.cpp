@@ -210,6 +210,10 @@ PictureFormat formatOf(const fs::path& path) {
   fail(ErrorCode::kUsage, path, fmt::format("unknown picture format; known extensions:{}", extensions));
 }
 
+bool hasPictureExtension(const fs::path& path) {
+  return findFormat(path).has_value();
+}
+
 void checkFormatAvailable(const fs::path& path) {
   if (formatOf(path).module) loadModule(path);
 }

@@ -28,6 +28,9 @@ struct PictureFormat {
 /// Throws Error(kUsage), which lists the known extensions, for any other.
 PictureFormat formatOf(const std::filesystem::path& path);
 
+/// The extension is one of a picture format, as formatOf() knows them.
+bool hasPictureExtension(const std::filesystem::path& path);
+
 /// What is to be written: the colour image that the format takes, and for formats with extra channels whatever else is
 /// not null. All images have the same size, at least 1x1.
 struct Picture {

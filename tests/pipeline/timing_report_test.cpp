@@ -44,8 +44,15 @@ RunTimes sampleRun() {
 }
 
 RunContext sampleContext() {
-  return {
-      .input = "a\xff.ply", .width = 100, .height = 50, .threads = 2, .simd_target = "AVX2", .build = "b", .cpu = "c"};
+  return {.input = "a\xff.ply",
+          .width = 100,
+          .height = 50,
+          .threads = 2,
+          .simd_target = "AVX2",
+          .build = "b",
+          .revision = "r",
+          .flags = "-f",
+          .cpu = "c"};
 }
 
 const StageRow& rowOf(const TimingReport& report, const std::string& name) {
@@ -142,6 +149,8 @@ TEST_CASE("pipeline/timing_report: the JSON says the same as the report") {
   CHECK(json["other_wall_ms"].get<double>() == doctest::Approx(report.other_ms));
   CHECK(json["counters"]["triangles_in"] == 1234567);
   CHECK(json["context"]["simd_target"] == "AVX2");
+  CHECK(json["context"]["revision"] == "r");
+  CHECK(json["context"]["flags"] == "-f");
 }
 
 TEST_CASE("pipeline/timing_report: the trace has a named track per thread and spans in microseconds") {
@@ -174,6 +183,13 @@ TEST_CASE("pipeline/timing_report: the trace has a named track per thread and sp
   CHECK(import_found);
   CHECK(frames == 3);
   CHECK(tracks == std::set<std::string>{"main", "worker 0", "worker 1"});
+}
+
+TEST_CASE("pipeline/timing_report: whole numbers have commas between thousands") {
+  CHECK(withCommas(0) == "0");
+  CHECK(withCommas(999) == "999");
+  CHECK(withCommas(1000) == "1,000");
+  CHECK(withCommas(1234567) == "1,234,567");
 }
 
 TEST_CASE("pipeline/timing_report: timePhase measures its work") {

@@ -1,0 +1,55 @@
+#include "cli/grouping_options.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "cli/values.h"
+
+namespace sheaf::cli {
+
+void addGroupingOptions(CLI::App& command, GroupingArguments& a) {
+  const auto add = [&](const char* name, auto& value, const std::string& meaning, const char* type) {
+    command.add_option(name, value, meaning)->type_name(type)->group("Groups");
+  };
+  add("--grouping", a.grouping, "Lines through two vertices, or planes through one (default planar)", "linear|planar");
+  add("--metric", a.metric,
+      "What epsilon holds: how far a vertex moves, or the error of its\nquadric (default distance)",
+      "distance|quadric");
+  add("--limit", a.limit, "Of the quadric metric: so that no face can fold over, or as\npublished (default safe)",
+      "safe|paper");
+  add("--epsilon", a.epsilon, "0.5% or 0.005 of the longest edge of each mesh's box (default 0.5%)", "E");
+  add("--parameters", a.parameters, "How parameters on lines and planes are stored (default 16bit)", "16bit|float");
+}
+
+pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments) {
+  pipeline::GroupingOptions options;
+  options.method = choose("--grouping", arguments.grouping.value_or("planar"), kGroupingNames);
+  options.metric = choose("--metric", arguments.metric.value_or("distance"), kMetricNames);
+  options.limit = choose("--limit", arguments.limit.value_or("safe"), kLimitNames);
+  options.epsilon = parseFraction("--epsilon", arguments.epsilon.value_or("0.5%"));
+  options.form = choose("--parameters", arguments.parameters.value_or("16bit"), kParameterNames);
+  if (arguments.limit && options.metric == grouping::Metric::kDistance)
+    throw Error(ErrorCode::kUsage, "--limit is for the quadric metric: by distance no vertex moves beyond epsilon");
+  return options;
+}
+
+std::string groupingText(const pipeline::GroupingOptions& options) {
+  std::string text =
+      fmt::format("{} groups, {} metric", nameOf(options.method, kGroupingNames), nameOf(options.metric, kMetricNames));
+  if (options.metric == grouping::Metric::kQuadric)
+    text += fmt::format(" with {} limit", nameOf(options.limit, kLimitNames));
+  return text + fmt::format(", epsilon {:.4g} %, {} parameters", 100.0 * options.epsilon,
+                            options.form == pipeline::ParameterForm::k16Bit ? "16-bit" : "float");
+}
+
+nlohmann::ordered_json groupingJson(const pipeline::GroupingOptions& options) {
+  nlohmann::ordered_json json = {{"method", nameOf(options.method, kGroupingNames)},
+                                 {"metric", nameOf(options.metric, kMetricNames)},
+                                 {"limit", nullptr},
+                                 {"epsilon", options.epsilon},
+                                 {"parameters", nameOf(options.form, kParameterNames)}};
+  if (options.metric == grouping::Metric::kQuadric) json["limit"] = nameOf(options.limit, kLimitNames);
+  return json;
+}
+
+}  // namespace sheaf::cli

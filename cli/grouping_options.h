@@ -1,0 +1,45 @@
+// cli/grouping_options: with which vertex groups a scene is drawn: the options that compare and bench share.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "cli/names.h"
+#include "pipeline/prepare.h"
+
+namespace CLI {
+class App;
+}
+
+namespace sheaf::cli {
+
+inline constexpr Names<pipeline::Grouping, 2> kGroupingNames = {
+    {{"linear", pipeline::Grouping::kLinear}, {"planar", pipeline::Grouping::kPlanar}}};
+inline constexpr Names<grouping::Metric, 2> kMetricNames = {
+    {{"distance", grouping::Metric::kDistance}, {"quadric", grouping::Metric::kQuadric}}};
+inline constexpr Names<grouping::Limit, 2> kLimitNames = {
+    {{"safe", grouping::Limit::kSafe}, {"paper", grouping::Limit::kPaper}}};
+inline constexpr Names<pipeline::ParameterForm, 2> kParameterNames = {
+    {{"16bit", pipeline::ParameterForm::k16Bit}, {"float", pipeline::ParameterForm::kFloat}}};
+
+/// The options as they were written; absent ones are empty.
+struct GroupingArguments {
+  std::optional<std::string> grouping;
+  std::optional<std::string> metric;
+  std::optional<std::string> limit;
+  std::optional<std::string> epsilon;
+  std::optional<std::string> parameters;
+};
+
+void addGroupingOptions(CLI::App& command, GroupingArguments& arguments);
+
+/// Planar groups by distance, epsilon 0.5 %, unless asked otherwise. Throws Error(kUsage) that names the option.
+pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments);
+
+/// `planar groups, distance metric, epsilon 0.5 %, 16-bit parameters`
+std::string groupingText(const pipeline::GroupingOptions& options);
+
+nlohmann::ordered_json groupingJson(const pipeline::GroupingOptions& options);
+
+}  // namespace sheaf::cli

@@ -74,7 +74,7 @@ void gatherAttributes(const mesh::Mesh& mesh, const grouping::PatchSet& set, std
   for (std::size_t slot = begin; slot < end; ++slot) {
     const std::uint32_t v = set.vertex_source[slot];
     for (int k = 0; k < 3; ++k) out.position[static_cast<std::size_t>(k)][slot] = mesh.positions[v][k];
-    if (!mesh.normals.empty()) out.normal[slot] = raster::packNormal(mesh.normals[v]);
+    if (!mesh.normals.empty()) out.normal[slot] = raster::vertexNormal(mesh.normals[v]);
     if (!mesh.texcoords.empty())
       for (int k = 0; k < 2; ++k) out.texcoord[static_cast<std::size_t>(k)][slot] = mesh.texcoords[v][k];
     if (!mesh.colors.empty()) {

@@ -26,7 +26,7 @@ struct PreparedMesh {
   std::array<std::vector<std::uint8_t>, 3> corners;
   std::vector<std::uint32_t> triangle_source;
   std::array<std::vector<float>, 3> position;       ///< object space
-  std::vector<std::uint32_t> normal;                ///< raster::packNormal(); empty = flat
+  std::vector<raster::VertexNormal> normal;         ///< object space; empty = flat
   std::array<std::vector<float>, 2> texcoord;       ///< empty = none
   std::array<std::vector<std::uint32_t>, 2> color;  ///< raster::packColor(); empty = none
   Box3 bounds;

@@ -3,7 +3,7 @@
 #include <bit>
 
 #include "raster/shade.h"
-#include "raster/shade_normal-inl.h"
+#include "raster/shade_math-inl.h"
 
 #if defined(SHEAF_RASTER_SHADE_FETCH_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHEAF_RASTER_SHADE_FETCH_INL_H_
@@ -35,15 +35,9 @@ struct BlockFragments {
   // For the same only: how the planes of ShadeTriangle rise along x and y, divided by their sum here.
   alignas(64) float along_x[3][kBlockPixels];
   alignas(64) float along_y[3][kBlockPixels];
-  // Of each vector, at its first pixel: the lanes to shade now, and the one triangle that all show, or kNoTriangle.
+  // Of each vector, at its first pixel: the lanes to shade now, and 1 if all of them show the same triangle.
   std::uint32_t lanes[kBlockPixels];
   std::uint32_t uniform[kBlockPixels];
-};
-
-/// UnpackDirections() of the corners of the triangle that last filled a vector, as most large ones do again.
-struct CornerNormals {
-  std::uint32_t triangle = kNoTriangle;
-  float corner[3][4];  ///< qx, qy, qz, scale
 };
 
 HWY_INLINE std::uint64_t AllLanes() {
@@ -59,6 +53,14 @@ HWY_INLINE void LoadRecords(const std::uint32_t* words, const std::uint32_t* ids
   const VI first = hn::BitCast(DI(), hn::ShiftLeft<4>(hn::Load(DU(), ids)));
   VU* const out[kWords] = {&w0, &w1, &w2, &w3, &w4, &w5, &w6, &w7, &w8, &w9, &w10, &w11, &w12, &w13, &w14, &w15};
   for (int word = 0; word < kWords; ++word) *out[word] = Gather(words + word, first);
+}
+
+HWY_INLINE void LoadNormals(const VertexNormal* normals, const std::int32_t* vertices, VF& x, VF& y, VF& z) {
+  const VI first = hn::ShiftLeft<2>(hn::Load(DI(), vertices));
+  const auto* words = reinterpret_cast<const float*>(normals);
+  x = Gather(words, first);
+  y = Gather(words + 1, first);
+  z = Gather(words + 2, first);
 }
 
 #else
@@ -126,6 +128,29 @@ HWY_INLINE void LoadRecords(const std::uint32_t* words, const std::uint32_t* ids
   TransposeBlocks(b0, b1, b2, b3, w4, w5, w6, w7);
   TransposeBlocks(c0, c1, c2, c3, w8, w9, w10, w11);
   TransposeBlocks(d0, d1, d2, d3, w12, w13, w14, w15);
+}
+
+/// The normals of vertices[0], vertices[4] and so on, one in each 128-bit block.
+template <class D>
+HWY_INLINE hn::Vec<D> LoadNormalBlocks(D d, const VertexNormal* normals, const std::int32_t* vertices) {
+  if constexpr (hn::MaxLanes(D()) == 4) {
+    return hn::Load(d, reinterpret_cast<const std::uint32_t*>(normals + vertices[0]));
+  } else {
+    const hn::Half<D> half;
+    return hn::Combine(d, LoadNormalBlocks(half, normals, vertices + hn::MaxLanes(half)),
+                       LoadNormalBlocks(half, normals, vertices));
+  }
+}
+
+HWY_INLINE void LoadNormals(const VertexNormal* normals, const std::int32_t* vertices, VF& x, VF& y, VF& z) {
+  const DU du;
+  VU row_x, row_y, row_z, unused;
+  TransposeBlocks(LoadNormalBlocks(du, normals, vertices), LoadNormalBlocks(du, normals, vertices + 1),
+                  LoadNormalBlocks(du, normals, vertices + 2), LoadNormalBlocks(du, normals, vertices + 3), row_x,
+                  row_y, row_z, unused);
+  x = hn::BitCast(DF(), row_x);
+  y = hn::BitCast(DF(), row_y);
+  z = hn::BitCast(DF(), row_z);
 }
 
 #endif
@@ -219,7 +244,7 @@ HWY_INLINE std::uint64_t FetchFragments(const ShadeTriangle* triangles, const st
     alignas(64) std::uint32_t lane_ids[kMaxLanes];
     hn::Store(id, du, lane_ids);
     const bool uniform = hn::AllTrue(du, hn::Eq(id, first));
-    out.uniform[begin] = uniform ? first_id : kNoTriangle;
+    out.uniform[begin] = uniform ? 1 : 0;
     const VI x = hn::Add(lane_x, hn::Set(di, static_cast<std::int32_t>(begin) & kRowMask));
     const VI y = hn::Add(lane_y, hn::Set(di, static_cast<std::int32_t>(begin) / kBlockSize));
     const MF of_surface = uniform ? FetchVector<true, kPatterned>(triangles, lane_ids, surface_id, x, y, begin, out)
@@ -232,40 +257,31 @@ HWY_INLINE std::uint64_t FetchFragments(const ShadeTriangle* triangles, const st
   return all_mine;
 }
 
-/// Object-space normals of all vectors, interpolated between the corners' normals of equal length.
-HWY_INLINE void FetchSmoothNormals(const std::uint32_t* normals, BlockFragments& fragments, CornerNormals& last) {
+/// Object-space normals of all vectors, interpolated between the corners'.
+HWY_INLINE void FetchSmoothNormals(const VertexNormal* normals, BlockFragments& fragments) {
   const DF d;
   for (std::size_t begin = 0; begin < kBlockPixels; begin += hn::Lanes(d)) {
     if (fragments.lanes[begin] == 0) continue;
-    const std::uint32_t uniform = fragments.uniform[begin];
-    const bool known = uniform != kNoTriangle && uniform == last.triangle;
+    const bool uniform = fragments.uniform[begin] != 0;
     VF nx = hn::Zero(d);
     VF ny = hn::Zero(d);
     VF nz = hn::Zero(d);
     for (int corner = 0; corner < 3; ++corner) {
-      VF x, y, z, scale;
-      float* kept = last.corner[corner];
-      if (known) {
-        x = Constant(kept[0]);
-        y = Constant(kept[1]);
-        z = Constant(kept[2]);
-        scale = Constant(kept[3]);
+      const std::int32_t* vertices = fragments.vertex[corner] + begin;
+      VF x, y, z;
+      if (uniform) {
+        const VertexNormal& normal = normals[vertices[0]];
+        x = Constant(normal.x);
+        y = Constant(normal.y);
+        z = Constant(normal.z);
       } else {
-        const VU packed = Gather(normals, hn::Load(DI(), fragments.vertex[corner] + begin));
-        UnpackDirections(packed, x, y, z, scale);
-        if (uniform != kNoTriangle) {
-          kept[0] = hn::GetLane(x);
-          kept[1] = hn::GetLane(y);
-          kept[2] = hn::GetLane(z);
-          kept[3] = hn::GetLane(scale);
-        }
+        LoadNormals(normals, vertices, x, y, z);
       }
-      const VF weight = hn::Mul(hn::Load(d, fragments.barycentric[corner] + begin), scale);
+      const VF weight = hn::Load(d, fragments.barycentric[corner] + begin);
       nx = corner == 0 ? hn::Mul(weight, x) : hn::Add(nx, hn::Mul(weight, x));
       ny = corner == 0 ? hn::Mul(weight, y) : hn::Add(ny, hn::Mul(weight, y));
       nz = corner == 0 ? hn::Mul(weight, z) : hn::Add(nz, hn::Mul(weight, z));
     }
-    if (uniform != kNoTriangle) last.triangle = uniform;
     hn::Store(nx, d, fragments.normal[0] + begin);
     hn::Store(ny, d, fragments.normal[1] + begin);
     hn::Store(nz, d, fragments.normal[2] + begin);

@@ -36,7 +36,7 @@ Image8 noiseImage(int size) {
 struct Workload {
   std::vector<float> position[3];
   std::vector<float> texcoord[2];
-  std::vector<std::uint32_t> normal;
+  std::vector<VertexNormal> normal;
   std::vector<ShadeTriangle> triangles;
   std::vector<TileVisibility> tiles;
   std::vector<Surface> surfaces{1};
@@ -77,7 +77,7 @@ struct Workload {
       for (auto& axis : position) axis.push_back(signed_unit(rng));
       for (auto& axis : texcoord) axis.push_back(0.05F * signed_unit(rng));
       const Vec3 n = {signed_unit(rng), signed_unit(rng), 1.2F};
-      normal.push_back(packNormal(glm::normalize(n)));
+      normal.push_back(vertexNormal(n));
     }
   }
 

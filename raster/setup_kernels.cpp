@@ -1,3 +1,6 @@
+#include <cstddef>
+#include <cstring>
+
 #include "raster/setup.h"
 #include "raster/setup_one.h"
 
@@ -76,15 +79,30 @@ HWY_INLINE VI CoverSmall(const EdgeLanes& e0, const EdgeLanes& e1, const EdgeLan
   return mask;
 }
 
-// What goes into memory for each surviving lane.
+// What goes into memory for each surviving lane: quarters of its ShadeTriangle, halves of its BinEntry, and what a
+// LargeTriangle needs besides.
 struct alignas(64) LaneOutput {
-  float u0[3][kMaxLanes], ux[3][kMaxLanes], uy[3][kMaxLanes];
-  float z[kMaxLanes], dzdx[kMaxLanes], dzdy[kMaxLanes], lo[kMaxLanes], hi[kMaxLanes];
-  std::int32_t vertex[3][kMaxLanes];
+  std::uint32_t shade[4][kMaxLanes][4];
+  std::uint32_t entry[2][kMaxLanes][4];
   std::int32_t a[3][kMaxLanes], b[3][kMaxLanes], c[3][kMaxLanes];  // PixelEdge
-  std::int32_t x_min[kMaxLanes], y_min[kMaxLanes], x_max[kMaxLanes], y_max[kMaxLanes];
-  std::int32_t mask[kMaxLanes];
+  std::int32_t x_max[kMaxLanes], y_max[kMaxLanes];
 };
+static_assert(sizeof(ShadeTriangle) == 4 * sizeof(LaneOutput::shade[0][0]));
+static_assert(offsetof(ShadeTriangle, ux) == 12 && offsetof(ShadeTriangle, uy) == 24);
+static_assert(offsetof(ShadeTriangle, ref_x) == 36 && offsetof(ShadeTriangle, vertex) == 40);
+static_assert(offsetof(ShadeTriangle, surface) == 52 && offsetof(ShadeTriangle, back_face) == 60);
+static_assert(sizeof(BinEntry) == 2 * sizeof(LaneOutput::entry[0][0]));
+static_assert(offsetof(BinEntry, mask) == 4 && offsetof(BinEntry, depth) == 8 && offsetof(BinEntry, index) == 28);
+
+// Four words of every lane, lane by lane.
+HWY_INLINE void StoreWords(VI w0, VI w1, VI w2, VI w3, std::uint32_t (&to)[kMaxLanes][4]) {
+  const hn::RebindToUnsigned<decltype(di)> du;
+  hn::StoreInterleaved4(hn::BitCast(du, w0), hn::BitCast(du, w1), hn::BitCast(du, w2), hn::BitCast(du, w3), du, to[0]);
+}
+
+HWY_INLINE VI Bits(VF v) {
+  return hn::BitCast(di, v);
+}
 
 void StorePixelEdge(const EdgeLanes& edge, int i, LaneOutput& out) {
   hn::Store(edge.a, di, out.a[i]);
@@ -92,37 +110,29 @@ void StorePixelEdge(const EdgeLanes& edge, int i, LaneOutput& out) {
   hn::Store(hn::ShiftRight<kSubpixelBits>(hn::Add(edge.e, TopLeftBias(edge))), di, out.c[i]);
 }
 
-void EmitLane(const LaneOutput& out, int lane, bool small, bool turned, bool back, std::uint32_t t,
-              const PatchTriangles& triangles, Binner& binner) {
+HWY_INLINE void EmitLane(const LaneOutput& out, std::size_t lane, bool small, std::uint32_t triangle, Binner& binner) {
   const std::uint32_t index = binner.newShadeTriangle();
   ShadeTriangle& shade = binner.shadeTriangle(index);
-  // Shading wants the mesh's own order of corners.
-  const int from[3] = {0, turned ? 2 : 1, turned ? 1 : 2};
-  for (int i = 0; i < 3; ++i) {
-    shade.u0[i] = out.u0[from[i]][lane];
-    shade.ux[i] = out.ux[from[i]][lane];
-    shade.uy[i] = out.uy[from[i]][lane];
-    shade.vertex[i] = triangles.first_vertex + static_cast<std::uint32_t>(out.vertex[from[i]][lane]);
-  }
-  shade.ref_x = static_cast<std::int16_t>(out.x_min[lane]);
-  shade.ref_y = static_cast<std::int16_t>(out.y_min[lane]);
-  shade.surface = triangles.surface;
-  shade.triangle = triangles.source[t];
-  shade.back_face = back ? 1 : 0;
-  const DepthPlane plane = {out.z[lane], out.dzdx[lane], out.dzdy[lane], out.lo[lane], out.hi[lane]};
+  for (std::size_t quarter = 0; quarter < 4; ++quarter)
+    std::memcpy(reinterpret_cast<char*>(&shade) + 16 * quarter, out.shade[quarter][lane], 16);
+  shade.triangle = triangle;
+  BinEntry entry;
+  for (std::size_t half = 0; half < 2; ++half)
+    std::memcpy(reinterpret_cast<char*>(&entry) + 16 * half, out.entry[half][lane], 16);
+  entry.index = index;
   if (small) {
-    binner.addSmall({shade.ref_x, shade.ref_y, static_cast<std::uint16_t>(out.mask[lane]), 0, plane, index});
-  } else {
-    LargeTriangle large;
-    for (int i = 0; i < 3; ++i) large.edges[i] = {out.a[i][lane], out.b[i][lane], out.c[i][lane]};
-    large.ref_x = shade.ref_x;
-    large.ref_y = shade.ref_y;
-    large.last_x = static_cast<std::int16_t>(out.x_max[lane]);
-    large.last_y = static_cast<std::int16_t>(out.y_max[lane]);
-    large.depth = plane;
-    large.shade = index;
-    binner.addLarge(large);
+    binner.addSmall(entry);
+    return;
   }
+  LargeTriangle large;
+  for (int i = 0; i < 3; ++i) large.edges[i] = {out.a[i][lane], out.b[i][lane], out.c[i][lane]};
+  large.ref_x = entry.x;
+  large.ref_y = entry.y;
+  large.last_x = static_cast<std::int16_t>(out.x_max[lane]);
+  large.last_y = static_cast<std::int16_t>(out.y_max[lane]);
+  large.depth = entry.depth;
+  large.shade = index;
+  binner.addLarge(large);
 }
 
 void SetupTriangles(const ScreenVertices& vertices, const PatchTriangles& triangles, Binner& binner,
@@ -184,6 +194,7 @@ void SetupTriangles(const ScreenVertices& vertices, const PatchTriangles& triang
     const VI x1_in = x1;
     const VI y1_in = y1;
     const VI i1_in = i1;
+    const VI i2_in = i2;
     x1 = hn::IfThenElse(negative, x2, x1);
     y1 = hn::IfThenElse(negative, y2, y1);
     i1 = hn::IfThenElse(negative, i2, i1);
@@ -201,6 +212,7 @@ void SetupTriangles(const ScreenVertices& vertices, const PatchTriangles& triang
     const VI rows = hn::Sub(y_max, y_min);
     const VI small_max = hn::Set(di, kSmallSize - 1);
     const unsigned small = alive & ~MaskBits(hn::Or(hn::Gt(columns, small_max), hn::Gt(rows, small_max)));
+    VI mask = zero;
     if (small != 0) {
       // Pixels of the 4x4 beyond the box lie beyond the target's edge or are not covered.
       VI in_box = hn::Set(di, 0xFFFF);
@@ -210,8 +222,7 @@ void SetupTriangles(const ScreenVertices& vertices, const PatchTriangles& triang
       in_box = hn::IfThenElse(hn::Lt(rows, hn::Set(di, 3)), hn::And(in_box, hn::Set(di, 0x0FFF)), in_box);
       in_box = hn::IfThenElse(hn::Lt(rows, hn::Set(di, 2)), hn::And(in_box, hn::Set(di, 0x00FF)), in_box);
       in_box = hn::IfThenElse(hn::Lt(rows, one), hn::And(in_box, hn::Set(di, 0x000F)), in_box);
-      const VI mask = hn::And(CoverSmall(e0, e1, e2), in_box);
-      hn::Store(mask, di, out.mask);
+      mask = hn::And(CoverSmall(e0, e1, e2), in_box);
       const unsigned empty = small & MaskBits(hn::Eq(mask, zero));
       counts.no_sample += static_cast<unsigned>(__builtin_popcount(empty));
       alive &= ~empty;
@@ -235,31 +246,38 @@ void SetupTriangles(const ScreenVertices& vertices, const PatchTriangles& triang
     const VF d1 = hn::Sub(z1, z0);
     const VF d2 = hn::Sub(z2, z0);
     const VF inv_area_px = hn::Mul(inv_area, subpixels);
-    hn::Store(hn::Add(z0, hn::Mul(hn::Add(hn::Mul(f1e, d1), hn::Mul(f2e, d2)), inv_area)), df, out.z);
-    hn::Store(hn::Mul(hn::Add(hn::Mul(f1a, d1), hn::Mul(f2a, d2)), inv_area_px), df, out.dzdx);
-    hn::Store(hn::Mul(hn::Add(hn::Mul(f1b, d1), hn::Mul(f2b, d2)), inv_area_px), df, out.dzdy);
-    hn::Store(hn::Min(hn::Min(z0, z1), z2), df, out.lo);
-    hn::Store(hn::Max(hn::Max(z0, z1), z2), df, out.hi);
+    const VF z = hn::Add(z0, hn::Mul(hn::Add(hn::Mul(f1e, d1), hn::Mul(f2e, d2)), inv_area));
+    const VF dzdx = hn::Mul(hn::Add(hn::Mul(f1a, d1), hn::Mul(f2a, d2)), inv_area_px);
+    const VF dzdy = hn::Mul(hn::Add(hn::Mul(f1b, d1), hn::Mul(f2b, d2)), inv_area_px);
+    const VI ref = hn::Or(hn::And(x_min, hn::Set(di, 0xFFFF)), hn::ShiftLeft<16>(y_min));
+    StoreWords(ref, mask, Bits(z), Bits(dzdx), out.entry[0]);
+    StoreWords(Bits(dzdy), Bits(hn::Min(hn::Min(z0, z1), z2)), Bits(hn::Max(hn::Max(z0, z1), z2)), zero, out.entry[1]);
+
     const VF s0 = hn::Mul(inv_area, Gather(vertices.inv_w, i0));
     const VF s1 = hn::Mul(inv_area, Gather(vertices.inv_w, i1));
     const VF s2 = hn::Mul(inv_area, Gather(vertices.inv_w, i2));
     const VF s0_px = hn::Mul(s0, subpixels);
     const VF s1_px = hn::Mul(s1, subpixels);
     const VF s2_px = hn::Mul(s2, subpixels);
-    hn::Store(hn::Mul(hn::ConvertTo(df, e0.e), s0), df, out.u0[0]);
-    hn::Store(hn::Mul(f1e, s1), df, out.u0[1]);
-    hn::Store(hn::Mul(f2e, s2), df, out.u0[2]);
-    hn::Store(hn::Mul(hn::ConvertTo(df, e0.a), s0_px), df, out.ux[0]);
-    hn::Store(hn::Mul(f1a, s1_px), df, out.ux[1]);
-    hn::Store(hn::Mul(f2a, s2_px), df, out.ux[2]);
-    hn::Store(hn::Mul(hn::ConvertTo(df, e0.b), s0_px), df, out.uy[0]);
-    hn::Store(hn::Mul(f1b, s1_px), df, out.uy[1]);
-    hn::Store(hn::Mul(f2b, s2_px), df, out.uy[2]);
-    hn::Store(i0, di, out.vertex[0]);
-    hn::Store(i1, di, out.vertex[1]);
-    hn::Store(i2, di, out.vertex[2]);
-    hn::Store(x_min, di, out.x_min);
-    hn::Store(y_min, di, out.y_min);
+    const VF u0_1 = hn::Mul(f1e, s1);
+    const VF u0_2 = hn::Mul(f2e, s2);
+    const VF ux_1 = hn::Mul(f1a, s1_px);
+    const VF ux_2 = hn::Mul(f2a, s2_px);
+    const VF uy_1 = hn::Mul(f1b, s1_px);
+    const VF uy_2 = hn::Mul(f2b, s2_px);
+    // Shading wants the mesh's own order of corners.
+    const auto turned = hn::RebindMask(df, negative);
+    const VI first_vertex = hn::Set(di, static_cast<std::int32_t>(triangles.first_vertex));
+    const VI back_lanes =
+        hn::IfThenElse(negative, hn::Set(di, front_positive ? 1 : 0), hn::Set(di, front_positive ? 0 : 1));
+    StoreWords(Bits(hn::Mul(hn::ConvertTo(df, e0.e), s0)), Bits(hn::IfThenElse(turned, u0_2, u0_1)),
+               Bits(hn::IfThenElse(turned, u0_1, u0_2)), Bits(hn::Mul(hn::ConvertTo(df, e0.a), s0_px)), out.shade[0]);
+    StoreWords(Bits(hn::IfThenElse(turned, ux_2, ux_1)), Bits(hn::IfThenElse(turned, ux_1, ux_2)),
+               Bits(hn::Mul(hn::ConvertTo(df, e0.b), s0_px)), Bits(hn::IfThenElse(turned, uy_2, uy_1)), out.shade[1]);
+    StoreWords(Bits(hn::IfThenElse(turned, uy_1, uy_2)), ref, hn::Add(first_vertex, i0), hn::Add(first_vertex, i1_in),
+               out.shade[2]);
+    StoreWords(hn::Add(first_vertex, i2_in), hn::Set(di, static_cast<std::int32_t>(triangles.surface)), zero,
+               back_lanes, out.shade[3]);
     if ((alive & ~small) != 0) {
       StorePixelEdge(e0, 0, out);
       StorePixelEdge(e1, 1, out);
@@ -269,9 +287,8 @@ void SetupTriangles(const ScreenVertices& vertices, const PatchTriangles& triang
     }
 
     for (unsigned rest = alive; rest != 0; rest &= rest - 1) {
-      const int lane = __builtin_ctz(rest);
-      EmitLane(out, lane, (small >> lane & 1U) != 0, (negative_bits >> lane & 1U) != 0, (back >> lane & 1U) != 0,
-               t + static_cast<std::uint32_t>(lane), triangles, binner);
+      const auto lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
+      EmitLane(out, lane, (small >> lane & 1U) != 0, triangles.source[t + lane], binner);
     }
   }
 }

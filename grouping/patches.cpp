@@ -446,4 +446,13 @@ PatchSet splitIntoPatches(const Mesh& mesh, const PatchLimits& limits, TaskPool&
   return set;
 }
 
+void renewBounds(const Mesh& mesh, PatchSet& set, TaskPool& pool) {
+  pool.parallelFor(static_cast<int>(set.patches.size()), [&](int piece, int) {
+    Patch& patch = set.patches[static_cast<std::size_t>(piece)];
+    patch.bounds = {};
+    for (std::uint32_t i = 0; i < patch.vertex_count; ++i)
+      patch.bounds.extend(mesh.positions[set.vertex_source[patch.first_vertex + i]]);
+  });
+}
+
 }  // namespace sheaf::grouping

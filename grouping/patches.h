@@ -53,4 +53,7 @@ struct PatchLimits {
 /// normals end up together. Triangles that use a vertex twice are left out.
 PatchSet splitIntoPatches(const mesh::Mesh& mesh, const PatchLimits& limits, TaskPool& pool);
 
+/// Bounds again, after the mesh's vertices have moved. Cones stay: they speak of the surface as it was.
+void renewBounds(const mesh::Mesh& mesh, PatchSet& set, TaskPool& pool);
+
 }  // namespace sheaf::grouping

@@ -52,25 +52,4 @@ ClippedPolygon clipTriangle(const std::array<Vec4, 3>& triangle, std::int32_t pl
   return polygon;
 }
 
-void classifyTriangles(const std::array<const std::uint8_t*, 3>& corner, const std::uint32_t* source,
-                       std::uint32_t count, const std::int32_t* codes, ClassifiedTriangles& out) {
-  out.inside.count = 0;
-  out.clipped_count = 0;
-  out.outside_count = 0;
-  for (std::uint32_t t = 0; t < count; ++t) {
-    const std::int32_t c0 = codes[corner[0][t]];
-    const std::int32_t c1 = codes[corner[1][t]];
-    const std::int32_t c2 = codes[corner[2][t]];
-    if ((c0 & c1 & c2 & kOutsideBits) != 0) {
-      ++out.outside_count;
-    } else if (((c0 | c1 | c2) & kClipBits) != 0) {
-      out.clipped[out.clipped_count++] = t;
-    } else {
-      for (std::size_t i = 0; i < 3; ++i) out.inside.corner[i][out.inside.count] = corner[i][t];
-      out.inside.source[out.inside.count++] = source[t];
-    }
-  }
-  for (auto& corners : out.inside.corner) std::fill_n(corners.begin() + out.inside.count, 16, std::uint8_t{0});
-}
-
 }  // namespace sheaf::pipeline

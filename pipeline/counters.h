@@ -7,10 +7,16 @@ namespace sheaf::pipeline {
 
 struct Counters {
   std::uint64_t instances = 0;
-  std::uint64_t patches = 0;              ///< patches of all instances
-  std::uint64_t patches_outside = 0;      ///< rejected by the view volume
-  std::uint64_t patches_back_facing = 0;  ///< rejected by the normal cone
-  std::uint64_t vertices_transformed = 0;
+  std::uint64_t patches = 0;                ///< patches of all instances
+  std::uint64_t patches_outside = 0;        ///< rejected by the view volume
+  std::uint64_t patches_back_facing = 0;    ///< rejected by the normal cone
+  std::uint64_t vertices_transformed = 0;   ///< in any way; of these
+  std::uint64_t vertices_full = 0;          ///< from three coordinates
+  std::uint64_t vertices_grouped = 0;       ///< from the parameters of a line or plane
+  std::uint64_t vertices_coded = 0;         ///< given outcodes one by one
+  std::uint64_t groups_tested = 0;          ///< runs of vertices tested against the view as a whole; of these
+  std::uint64_t groups_outside = 0;         ///< rejected
+  std::uint64_t groups_inside = 0;          ///< accepted: no member needs clipping
   std::uint64_t triangles_in = 0;           ///< triangles of all instances
   std::uint64_t triangles_assembled = 0;    ///< of patches that were not culled
   std::uint64_t triangles_outside = 0;      ///< all corners beyond one plane

@@ -26,16 +26,32 @@ Range rangeOver(const Vec4& plane, const Box3& box) {
 // A bound of the rounding in rangeOver and in the vertices' own transform; a patch within it of a plane counts as
 // crossing.
 float slackOver(const Vec4& plane, const Box3& box) {
-  constexpr float kUlps = 16.0F / (1 << 24);
   float magnitude = std::abs(plane.w);
   for (int k = 0; k < 3; ++k) magnitude += std::abs(plane[k]) * std::max(std::abs(box.lo[k]), std::abs(box.hi[k]));
-  return kUlps * magnitude;
+  return kCodeSlack * magnitude;
 }
 
 bool isOutside(const std::array<Vec4, 6>& planes, const Box3& box) {
   for (const Vec4& plane : planes)
     if (rangeOver(plane, box).hi < -slackOver(plane, box)) return true;
   return false;
+}
+
+bool crosses(const Vec4& plane, const Box3& box) {
+  return rangeOver(plane, box).lo < slackOver(plane, box);
+}
+
+RunPlanes runPlanes(const InstanceView& view, const Vec4& w) {
+  RunPlanes planes{};
+  std::size_t i = 0;
+  const auto add = [&](const Vec4& plane) {
+    for (int k = 0; k < 4; ++k) planes.coefficient[k][i] = plane[k];
+    ++i;
+  };
+  for (const Vec4& plane : view.view_planes) add(plane);
+  for (const Vec4& plane : view.guard_planes) add(plane);
+  add(w);
+  return planes;
 }
 
 // Every triangle of the patch is seen from behind: the eye lies behind the plane of each, wherever in the patch's
@@ -64,6 +80,7 @@ InstanceView viewInstance(const scenes::Instance& instance, const Box3& bounds_o
   const Vec4 guard_x = view.viewport.guard_x * w;
   const Vec4 guard_y = view.viewport.guard_y * w;
   out.guard_planes = {guard_x + x, guard_x - x, guard_y + y, guard_y - y};
+  out.run_planes = runPlanes(out, w);
   const DMat4 object_from_world = glm::inverse(instance.world_from_object);
   out.eye_object = Vec4(object_from_world * view.eye_world);
   out.mirrored = glm::determinant(DMat3(instance.world_from_object)) < 0.0;
@@ -74,12 +91,41 @@ InstanceView viewInstance(const scenes::Instance& instance, const Box3& bounds_o
 PatchVisibility classifyPatch(const grouping::Patch& patch, const InstanceView& view, bool back_faces_culled) {
   if (isOutside(view.view_planes, patch.bounds)) return PatchVisibility::kOutside;
   if (back_faces_culled && isBackFacing(patch, view.eye_object)) return PatchVisibility::kBackFacing;
-  const auto crosses = [&](const Vec4& plane) {
-    return rangeOver(plane, patch.bounds).lo < slackOver(plane, patch.bounds);
-  };
-  bool clips = crosses(view.view_planes[4]) || crosses(view.view_planes[5]);
-  for (const Vec4& plane : view.guard_planes) clips = clips || crosses(plane);
-  return clips ? PatchVisibility::kStraddling : PatchVisibility::kInside;
+  const Box3& box = patch.bounds;
+  bool clips = crosses(view.view_planes[4], box) || crosses(view.view_planes[5], box);
+  for (const Vec4& plane : view.guard_planes) clips = clips || crosses(plane, box);
+  if (clips) return PatchVisibility::kStraddling;
+  for (std::size_t side = 0; side < 4; ++side)
+    if (crosses(view.view_planes[side], box)) return PatchVisibility::kAcrossSides;
+  return PatchVisibility::kInside;
+}
+
+RunCodes codeRun(const grouping::VertexRun& run, const RunPlanes& planes) {
+  std::int32_t must = 0;
+  std::int32_t may = 0;
+  for (std::size_t i = 0; i < RunPlanes::kCount; ++i) {
+    const float constant = planes.coefficient[3][i];
+    float lo = constant, hi = constant, magnitude = std::abs(constant);
+    float at_lo = constant, at_hi = constant;
+    for (int k = 0; k < 3; ++k) {
+      const float a = planes.coefficient[k][i] * run.corner_lo[k];
+      const float b = planes.coefficient[k][i] * run.corner_hi[k];
+      lo += std::min(a, b);
+      hi += std::max(a, b);
+      at_lo += a;
+      at_hi += b;
+      magnitude += std::max(std::abs(a), std::abs(b));
+    }
+    if (run.kind == grouping::RunKind::kLine) {
+      lo = std::min(at_lo, at_hi);
+      hi = std::max(at_lo, at_hi);
+    }
+    const float slack = kCodeSlack * magnitude;
+    const std::int32_t bit = i == RunPlanes::kCount - 1 ? kOutNear : 1 << i;
+    if (hi < -slack) must |= bit;
+    if (lo <= slack) may |= bit;
+  }
+  return {must, may};
 }
 
 }  // namespace sheaf::pipeline

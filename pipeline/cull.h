@@ -3,10 +3,12 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/math.h"
 #include "grouping/patches.h"
+#include "grouping/vertex_runs.h"
 #include "pipeline/counters.h"
 #include "pipeline/prepare.h"
 #include "pipeline/transform.h"
@@ -21,6 +23,17 @@ struct View {
   Viewport viewport;
 };
 
+/// The tests of OutcodeVertex as linear functions of object space: x, y, z and constant coefficients of w + x, w - x,
+/// w + y, w - y, z, w - z, the four of the guard band, and w itself. A bit of Outcode belongs to each but the last,
+/// which stands in for kOutNear.
+struct alignas(64) RunPlanes {
+  static constexpr std::size_t kCount = 11;
+  float coefficient[4][16];
+};
+
+/// Of the sum of magnitudes: a bound of the rounding in a run's test and in the transform of its vertices.
+inline constexpr float kCodeSlack = 16.0F / (1 << 24);
+
 /// What a frame knows of one instance.
 struct InstanceView {
   Mat4 clip_from_object;
@@ -28,6 +41,7 @@ struct InstanceView {
   /// by (near and far again, guard band).
   std::array<Vec4, 6> view_planes;
   std::array<Vec4, 4> guard_planes;
+  RunPlanes run_planes;
   Vec4 eye_object;  ///< as View::eye_world
   bool visible = true;
   bool mirrored = false;  ///< the transform turns the winding round
@@ -36,10 +50,27 @@ struct InstanceView {
 /// cull = false leaves `visible` true.
 InstanceView viewInstance(const scenes::Instance& instance, const Box3& bounds_object, const View& view, bool cull);
 
-enum class PatchVisibility : std::uint8_t { kOutside, kBackFacing, kStraddling, kInside };
+enum class PatchVisibility : std::uint8_t {
+  kOutside,
+  kBackFacing,
+  kStraddling,   ///< some vertex may need clipping
+  kAcrossSides,  ///< none does, but some may lie beyond the edges of the picture, within the guard band
+  kInside,       ///< wholly in view
+};
 
-/// kInside: no vertex of the patch needs clipping (it may reach beyond the edges of the picture, into the guard band).
 /// back_faces_culled: false skips the cone test. Conservative: a visible patch is never kOutside.
 PatchVisibility classifyPatch(const grouping::Patch& patch, const InstanceView& view, bool back_faces_culled);
+
+/// Outcodes of all members of a run at once: `must` has the bits that every member has, `may` those that any may have.
+struct RunCodes {
+  std::int32_t must;
+  std::int32_t may;
+};
+
+/// Tests whole runs, by their rectangle, box or segment, before any vertex is touched ([PG] 3.2). Every outcode as
+/// outcodeVertex() gives it contains `must` and is contained in `may`.
+void codeRuns(std::span<const grouping::VertexRun> runs, const RunPlanes& planes, RunCodes* out);
+/// The same for one run; the plain reference.
+RunCodes codeRun(const grouping::VertexRun& run, const RunPlanes& planes);
 
 }  // namespace sheaf::pipeline

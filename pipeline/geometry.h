@@ -21,7 +21,7 @@ namespace sheaf::pipeline {
 struct DrawnPatch {
   std::uint32_t instance;
   std::uint32_t patch;
-  bool inside;  ///< no vertex needs clipping
+  PatchVisibility seen;  ///< not outside, not back-facing
 };
 
 /// Scratch memory of one worker; all of it stays in its caches.
@@ -32,13 +32,16 @@ struct GeometryWorker {
   std::vector<DrawnPatch> drawn;
   ClipVertices clip;
   ProjectedVertices projected;
-  alignas(64) std::array<std::int32_t, kMaxPatchVertices> codes;
-  ClassifiedTriangles classified;
+  VertexCodes codes;
+  std::array<RunCodes, kMaxPatchVertices> run_codes;
+  std::array<bool, kMaxPatchVertices> run_untransformed;
+  std::array<std::uint32_t, 512> undecided;  ///< triangles that are not known to be outside
+  TriangleRun unclipped;
   std::vector<raster::TileEntries> tile_entries;
 };
 
 /// Draws one patch into the worker's bins. The clock must run; it is left in some stage.
-void drawPatch(const PreparedMesh& mesh, const grouping::Patch& patch, const InstanceView& view, bool cull_back,
-               bool inside, std::uint32_t surface, const Viewport& viewport, GeometryWorker& worker);
+void drawPatch(const PreparedMesh& mesh, std::uint32_t patch, PatchVisibility seen, const InstanceView& view,
+               bool cull_back, std::uint32_t surface, const Viewport& viewport, GeometryWorker& worker);
 
 }  // namespace sheaf::pipeline

@@ -4,6 +4,10 @@
 
 #include <utility>
 
+#include "grouping/group_quality.h"
+#include "grouping/linear_groups.h"
+#include "grouping/planar_groups.h"
+
 namespace sheaf::pipeline {
 namespace {
 
@@ -73,7 +77,8 @@ void gatherAttributes(const mesh::Mesh& mesh, const grouping::PatchSet& set, std
                       PreparedMesh& out) {
   for (std::size_t slot = begin; slot < end; ++slot) {
     const std::uint32_t v = set.vertex_source[slot];
-    for (int k = 0; k < 3; ++k) out.position[static_cast<std::size_t>(k)][slot] = mesh.positions[v][k];
+    if (!out.position[0].empty())
+      for (int k = 0; k < 3; ++k) out.position[static_cast<std::size_t>(k)][slot] = mesh.positions[v][k];
     if (!mesh.normals.empty()) out.normal[slot] = raster::vertexNormal(mesh.normals[v]);
     if (!mesh.texcoords.empty())
       for (int k = 0; k < 2; ++k) out.texcoord[static_cast<std::size_t>(k)][slot] = mesh.texcoords[v][k];
@@ -84,11 +89,53 @@ void gatherAttributes(const mesh::Mesh& mesh, const grouping::PatchSet& set, std
   }
 }
 
-PreparedMesh prepareMesh(const mesh::Mesh& mesh, TaskPool& pool) {
-  grouping::PatchSet set = grouping::splitIntoPatches(mesh, {}, pool);
+grouping::VertexGroups findGroups(const mesh::Mesh& mesh, const GroupingOptions& options) {
+  if (options.method == Grouping::kLinear) {
+    grouping::LinearOptions linear;
+    linear.epsilon = options.epsilon;
+    linear.metric = options.metric;
+    linear.limit = options.limit;
+    return groupLinear(mesh, linear);
+  }
+  grouping::PlanarOptions planar;
+  planar.epsilon = options.epsilon;
+  planar.metric = options.metric;
+  planar.limit = options.limit;
+  return groupPlanar(mesh, planar);
+}
+
+// Shorter runs on a plane cost more than transforming their vertices in full: bench/pipeline, transform by run length.
+constexpr std::uint32_t kMinPlaneRun = 16;
+constexpr std::uint32_t kNoPlaneRuns = 1000;
+
+// Moves the mesh's vertices to where their groups put them and sorts the patches by group.
+void groupVertices(const GroupingOptions& options, mesh::Mesh& mesh, grouping::PatchSet& set, TaskPool& pool,
+                   PreparedMesh& out, std::vector<std::string>& warnings) {
+  grouping::VertexGroups groups = findGroups(mesh, options);
+  warnings.insert(warnings.end(), groups.warnings.begin(), groups.warnings.end());
+  const grouping::PlacedVertices placed = placeGrouped(mesh, groups, set, options.form);
+  groups.positions = placed.positions;
+  grouping::measure(mesh.positions, mesh.triangles, groups);
+  out.grouping = groups.stats;
+  mesh.positions = placed.positions;
+  grouping::renewBounds(mesh, set, pool);
+  out.vertices = buildVertexRuns(placed, options.use_groups ? kMinPlaneRun : kNoPlaneRuns, set, pool);
+}
+
+// positions_shaded  shading reads positions
+PreparedMesh prepareMesh(mesh::Mesh& mesh, const GroupingOptions& options, bool positions_shaded, TaskPool& pool,
+                         std::vector<std::string>& warnings) {
   PreparedMesh out;
+  out.extent = mesh::boundsOf(mesh).longestEdge();
+  grouping::PatchSet set = grouping::splitIntoPatches(mesh, {}, pool);
+  if (options.method == Grouping::kNone)
+    out.vertices = ungroupedRuns(mesh, set, pool);
+  else
+    groupVertices(options, mesh, set, pool, out, warnings);
+
   const std::size_t slots = set.vertex_source.size();
-  for (auto& axis : out.position) axis.resize(slots);
+  if (positions_shaded && !out.vertices.isFullBySlot())
+    for (auto& axis : out.position) axis.resize(slots);
   if (!mesh.normals.empty()) out.normal.resize(slots);
   if (!mesh.texcoords.empty())
     for (auto& axis : out.texcoord) axis.resize(slots);
@@ -112,10 +159,22 @@ PreparedMesh prepareMesh(const mesh::Mesh& mesh, TaskPool& pool) {
   return out;
 }
 
+// Meshes whose shading reads positions: of solid textures and of flat normals.
+std::vector<bool> meshesWithShadedPositions(const scenes::Scene& scene) {
+  std::vector<bool> shaded(scene.meshes.size(), false);
+  for (const scenes::Instance& instance : scene.instances) {
+    const scenes::Material& material = scene.materials[instance.material];
+    if (material.solid != scenes::Solid::kNone || material.shading == scenes::Shading::kFlat ||
+        scene.meshes[instance.mesh].normals.empty())
+      shaded[instance.mesh] = true;
+  }
+  return shaded;
+}
+
 }  // namespace
 
 std::uint64_t PreparedMesh::bytes() const {
-  std::uint64_t sum = bytesOf(patches) + bytesOf(triangle_source) + bytesOf(normal);
+  std::uint64_t sum = vertices.bytes() + bytesOf(patches) + bytesOf(triangle_source) + bytesOf(normal);
   for (const auto& c : corners) sum += bytesOf(c);
   for (const auto& p : position) sum += bytesOf(p);
   for (const auto& t : texcoord) sum += bytesOf(t);
@@ -123,12 +182,18 @@ std::uint64_t PreparedMesh::bytes() const {
   return sum;
 }
 
-PreparedScene prepareScene(scenes::Scene scene, TaskPool& pool) {
+const float* PreparedMesh::shadingPosition(std::size_t axis) const {
+  if (!position[axis].empty()) return position[axis].data();
+  return vertices.isFullBySlot() ? vertices.full[axis].data() : nullptr;
+}
+
+PreparedScene prepareScene(scenes::Scene scene, TaskPool& pool, const GroupingOptions& grouping) {
   PreparedScene out;
+  const std::vector<bool> positions_shaded = meshesWithShadedPositions(scene);
   out.meshes.reserve(scene.meshes.size());
-  for (mesh::Mesh& mesh : scene.meshes) {
-    out.meshes.push_back(prepareMesh(mesh, pool));
-    mesh = {};
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    out.meshes.push_back(prepareMesh(scene.meshes[m], grouping, positions_shaded[m], pool, out.warnings));
+    scene.meshes[m] = {};
   }
   out.textures.reserve(scene.textures.size());
   for (scenes::Texture& texture : scene.textures) {

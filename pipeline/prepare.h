@@ -13,11 +13,30 @@
 #include "core/math.h"
 #include "core/task_pool.h"
 #include "grouping/patches.h"
+#include "grouping/vertex_groups.h"
+#include "grouping/vertex_runs.h"
 #include "raster/shade.h"
 #include "raster/texture.h"
 #include "scenes/scene.h"
 
 namespace sheaf::pipeline {
+
+enum class Grouping : std::uint8_t { kNone, kLinear, kPlanar };
+
+using grouping::ParameterForm;
+
+/// Which vertices of each mesh are moved onto common lines or planes, and how they are then drawn. Grouping is lossy:
+/// vertices move by up to epsilon.
+struct GroupingOptions {
+  Grouping method = Grouping::kNone;
+  grouping::Metric metric = grouping::Metric::kDistance;
+  grouping::Limit limit = grouping::Limit::kSafe;  ///< of the quadric metric
+  double epsilon = 0.005;                          ///< fraction of each mesh's extent
+  ParameterForm form = ParameterForm::k16Bit;      ///< 16 bits move a vertex by up to 2^-17 of the largest patch's size
+  /// false: the snapped mesh drawn ungrouped: the same vertices at the same places, each stored and transformed in
+  /// full. What grouped drawing is held against.
+  bool use_groups = true;
+};
 
 /// A mesh cut into patches, its attributes in patch order (structure of arrays). Slots are those of
 /// grouping::PatchSet; padding slots hold copies.
@@ -25,15 +44,26 @@ struct PreparedMesh {
   std::vector<grouping::Patch> patches;
   std::array<std::vector<std::uint8_t>, 3> corners;
   std::vector<std::uint32_t> triangle_source;
-  std::array<std::vector<float>, 3> position;       ///< object space
+  grouping::VertexRuns vertices;  ///< what is transformed, object space
+  /// x, y, z by slot for shading, where it needs them and `vertices` does not have them so: solid textures, flat
+  /// normals.
+  std::array<std::vector<float>, 3> position;
   std::vector<raster::VertexNormal> normal;         ///< object space; empty = flat
   std::array<std::vector<float>, 2> texcoord;       ///< empty = none
   std::array<std::vector<std::uint32_t>, 2> color;  ///< raster::packColor(); empty = none
   Box3 bounds;
   std::uint64_t vertex_count = 0;  ///< slots that are not padding: border vertices count once per patch
   std::uint64_t triangle_count = 0;
+  /// What grouping did to the mesh as it is drawn; counts are 0 when it was not grouped.
+  grouping::GroupingStats grouping;
+  double extent = 0.0;  ///< longest edge of the mesh's box, the unit of the figures above
+
+  /// By slot; null where shading does not need it.
+  const float* shadingPosition(std::size_t axis) const;
 
   std::uint64_t bytes() const;
+  /// Of that, what the geometry stage reads of vertices: coordinates, parameters, runs.
+  std::uint64_t vertexBytes() const { return vertices.bytes(); }
 };
 
 /// Immutable and shared by all frames and threads. Does not refer to the scene that it was made from. Movable only:
@@ -57,6 +87,6 @@ struct PreparedScene {
 
 /// Cuts, reorders and packs. The scene's meshes and texture pixels are released as they are taken over, so that mesh
 /// and prepared mesh do not stand in memory together for longer than one mesh.
-PreparedScene prepareScene(scenes::Scene scene, TaskPool& pool);
+PreparedScene prepareScene(scenes::Scene scene, TaskPool& pool, const GroupingOptions& grouping = {});
 
 }  // namespace sheaf::pipeline

@@ -50,7 +50,7 @@ const T* dataOrNull(const std::vector<T>& v) {
 
 raster::Surface surfaceOf(const PreparedMesh& mesh, const scenes::Instance& instance, std::uint32_t number) {
   raster::Surface s;
-  for (std::size_t k = 0; k < 3; ++k) s.position_object[k] = mesh.position[k].data();
+  for (std::size_t k = 0; k < 3; ++k) s.position_object[k] = mesh.shadingPosition(k);
   s.normal = dataOrNull(mesh.normal);
   for (std::size_t k = 0; k < 2; ++k) s.texcoord[k] = dataOrNull(mesh.texcoord[k]);
   for (std::size_t k = 0; k < 2; ++k) s.color[k] = dataOrNull(mesh.color[k]);
@@ -184,7 +184,7 @@ void Renderer::State::cull(const PreparedScene& scene, const View& view, const R
       else if (seen == PatchVisibility::kBackFacing)
         ++w.counters.patches_back_facing;
       else
-        w.drawn.push_back({job.instance, p, seen == PatchVisibility::kInside});
+        w.drawn.push_back({job.instance, p, seen});
     }
     w.clock.end();
   });
@@ -209,8 +209,8 @@ void Renderer::State::drawGeometry(const PreparedScene& scene, const View& view)
       const DrawnPatch& d = drawn[i];
       const scenes::Instance& instance = scene.instances[d.instance];
       const PreparedMesh& mesh = scene.meshes[instance.mesh];
-      drawPatch(mesh, mesh.patches[d.patch], instances[d.instance], !scene.double_sided[instance.material], d.inside,
-                d.instance, view.viewport, w);
+      drawPatch(mesh, d.patch, d.seen, instances[d.instance], !scene.double_sided[instance.material], d.instance,
+                view.viewport, w);
     }
     w.clock.end();
   });

@@ -101,12 +101,18 @@ double otherMs(const RunTimes& run) {
   return spreadOver(run.frames, frameOtherMs).median + toMs(std::max<std::int64_t>(0, outside_ns));
 }
 
-constexpr std::array<std::pair<const char*, std::uint64_t Counters::*>, 17> kCounterNames = {{
+constexpr std::array<std::pair<const char*, std::uint64_t Counters::*>, 23> kCounterNames = {{
     {"instances", &Counters::instances},
     {"patches", &Counters::patches},
     {"patches_outside", &Counters::patches_outside},
     {"patches_back_facing", &Counters::patches_back_facing},
     {"vertices_transformed", &Counters::vertices_transformed},
+    {"vertices_full", &Counters::vertices_full},
+    {"vertices_grouped", &Counters::vertices_grouped},
+    {"vertices_coded", &Counters::vertices_coded},
+    {"groups_tested", &Counters::groups_tested},
+    {"groups_outside", &Counters::groups_outside},
+    {"groups_inside", &Counters::groups_inside},
     {"triangles_in", &Counters::triangles_in},
     {"triangles_assembled", &Counters::triangles_assembled},
     {"triangles_outside", &Counters::triangles_outside},

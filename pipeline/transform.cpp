@@ -14,10 +14,39 @@ Viewport::Viewport(int width, int height)
       guard_x(kGuardPx / half_width_px),
       guard_y(kGuardPx / half_height_px) {}
 
-Vec4 transformVertex(const Vec3& p, const Mat4& m) {
+Vec4 transformVertex(const Vec3& p, const Mat4& m, std::size_t first_axis) {
+  const auto [second, third] = grouping::axesBeside(first_axis);
+  const auto a = static_cast<int>(first_axis), b = static_cast<int>(second), c = static_cast<int>(third);
   Vec4 clip;
-  for (int row = 0; row < 4; ++row) clip[row] = ((m[3][row] + m[0][row] * p.x) + m[1][row] * p.y) + m[2][row] * p.z;
+  for (int row = 0; row < 4; ++row) clip[row] = ((m[3][row] + m[a][row] * p[a]) + m[b][row] * p[b]) + m[c][row] * p[c];
   return clip;
+}
+
+Vec4 transformGrouped(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch,
+                      const grouping::VertexRun& run, const StoredParameters& parameters, const Mat4& m) {
+  const bool quantised = runs.form == grouping::ParameterForm::k16Bit;
+  if (run.kind == grouping::RunKind::kLine) {
+    const grouping::RunLine& line = runs.lines[run.line];
+    const Vec4 base = transformVertex(line.base, m);
+    const float s = quantised ? line.s0 + parameters.s * line.ds : parameters.s;
+    Vec4 clip;
+    for (int row = 0; row < 4; ++row) {
+      const float direction =
+          (m[0][row] * line.direction.x + m[1][row] * line.direction.y) + m[2][row] * line.direction.z;
+      clip[row] = base[row] + direction * s;
+    }
+    return clip;
+  }
+  const auto [i, j] = grouping::axesBeside(run.axis);
+  Vec3 position;
+  position[run.axis] = run.plane;
+  position[static_cast<int>(i)] =
+      quantised ? static_cast<float>(patch.corner[i] + static_cast<std::int32_t>(parameters.s)) * runs.step
+                : parameters.s;
+  position[static_cast<int>(j)] =
+      quantised ? static_cast<float>(patch.corner[j] + static_cast<std::int32_t>(parameters.t)) * runs.step
+                : parameters.t;
+  return transformVertex(position, m, run.axis);
 }
 
 ProjectedVertex projectVertex(const Vec4& clip, const Viewport& viewport) {

@@ -5,10 +5,13 @@
 #include <cstdint>
 
 #include "core/math.h"
+#include "grouping/vertex_runs.h"
 
 namespace sheaf::pipeline {
 
 inline constexpr std::uint32_t kMaxPatchVertices = 256;
+/// Kernels work on whole vectors, so that they may write this many vertices beyond the last.
+inline constexpr std::uint32_t kVertexSlots = kMaxPatchVertices + grouping::kRunAlignment;
 
 /// Outcode bits. A triangle whose three corners share one of the first six is outside the view volume; one of whose
 /// corners has a bit of kClipBits must be clipped.
@@ -39,18 +42,18 @@ struct Viewport {
 
 /// Clip coordinates of a patch, structure of arrays.
 struct alignas(64) ClipVertices {
-  float x[kMaxPatchVertices];
-  float y[kMaxPatchVertices];
-  float z[kMaxPatchVertices];
-  float w[kMaxPatchVertices];
+  float x[kVertexSlots];
+  float y[kVertexSlots];
+  float z[kVertexSlots];
+  float w[kVertexSlots];
 };
 
 /// Screen coordinates of a patch; meaningless where w <= 0.
 struct alignas(64) ProjectedVertices {
-  std::int32_t x_fx[kMaxPatchVertices];
-  std::int32_t y_fx[kMaxPatchVertices];
-  float depth[kMaxPatchVertices];
-  float inv_w[kMaxPatchVertices];
+  std::int32_t x_fx[kVertexSlots];
+  std::int32_t y_fx[kVertexSlots];
+  float depth[kVertexSlots];
+  float inv_w[kVertexSlots];
 };
 
 struct OutcodeSummary {
@@ -58,16 +61,44 @@ struct OutcodeSummary {
   std::int32_t any;  ///< OR over the vertices
 };
 
-/// position  x, y, z: readable up to the next multiple of 16 of `count`; so are all arrays here
-void transformVertices(const std::array<const float*, 3>& position, std::uint32_t count, const Mat4& clip_from_object,
-                       ClipVertices& out);
-void projectVertices(const ClipVertices& vertices, std::uint32_t count, const Viewport& viewport,
+/// Where a run of a patch begins.
+struct RunStart {
+  std::uint32_t vertex = 0;     ///< local number of its first vertex
+  std::uint32_t full = 0;       ///< into VertexRuns::full
+  std::uint32_t parameter = 0;  ///< into VertexRuns::quantised or parameters
+
+  explicit RunStart(const grouping::PatchRuns& patch) : full(patch.first_full), parameter(patch.first_parameter) {}
+  void skip(const grouping::VertexRun& run) {
+    vertex += run.vertex_count;
+    (run.kind == grouping::RunKind::kFull ? full : parameter) += run.vertex_count;
+  }
+};
+
+/// All vertices of a patch: those in full by the matrix, others from their plane or line ([PG] eqs. 1, 2).
+void transformPatch(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const Mat4& clip_from_object,
+                    ClipVertices& out);
+
+/// Vertices [begin, end) of one run, counted from its first; nothing else of `out` is written.
+void transformRun(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const grouping::VertexRun& run,
+                  const RunStart& start, std::uint32_t begin, std::uint32_t end, const Mat4& clip_from_object,
+                  ClipVertices& out);
+
+/// Vertices [begin, end) of the patch; writes beyond, to the end of a vector, what it finds there.
+void projectVertices(const ClipVertices& vertices, std::uint32_t begin, std::uint32_t end, const Viewport& viewport,
                      ProjectedVertices& out);
-OutcodeSummary outcodeVertices(const ClipVertices& vertices, std::uint32_t count, const Viewport& viewport,
-                               std::int32_t* codes);
+/// codes  kVertexSlots
+OutcodeSummary outcodeVertices(const ClipVertices& vertices, std::uint32_t begin, std::uint32_t end,
+                               const Viewport& viewport, std::int32_t* codes);
 
 /// Plain references: one vertex with the same operations in the same order, so that results are equal to the bit.
-Vec4 transformVertex(const Vec3& position, const Mat4& clip_from_object);
+/// first_axis  the coordinate that is added first, the others follow in their order
+Vec4 transformVertex(const Vec3& position, const Mat4& clip_from_object, std::size_t first_axis = 0);
+/// A vertex of a plane or line from its parameters as they are stored; t is not used for lines.
+struct StoredParameters {
+  float s, t;  ///< form kFloat; of k16Bit the whole numbers
+};
+Vec4 transformGrouped(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch,
+                      const grouping::VertexRun& run, const StoredParameters& parameters, const Mat4& clip_from_object);
 struct ProjectedVertex {
   std::int32_t x_fx, y_fx;
   float depth, inv_w;

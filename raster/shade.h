@@ -38,7 +38,8 @@ struct alignas(16) VertexNormal {
 /// One instance: where its attributes are and how its normals turn. Attribute arrays are indexed by
 /// ShadeTriangle::vertex and readable at every index that a triangle names.
 struct Surface {
-  std::array<const float*, 3> position_object{};  ///< x, y, z; never null
+  std::array<const float*, 3> position_object{};  ///< x, y, z; null only if nothing reads them:
+                                                  ///< no solid texture, and normals that are not the triangle's own
   const VertexNormal* normal = nullptr;           ///< object space; null = use the triangle's own
   std::array<const float*, 2> texcoord{};         ///< u, v; null = none
   std::array<const std::uint32_t*, 2> color{};    ///< packColor(): rg, ba; null = none

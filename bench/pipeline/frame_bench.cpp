@@ -23,22 +23,25 @@ constexpr int kHeight = 1080;
 // vertices, so that it is bound by instructions up to some 10 GB/s.
 void transformAndProject(benchmark::State& state) {
   const auto patches = static_cast<std::size_t>(state.range(0));
-  const std::size_t vertices = patches * kMaxPatchVertices;
-  const std::vector<float> position(vertices, 0.25F);
+  grouping::VertexRuns vertices;
+  for (auto& axis : vertices.full) axis.assign(patches * kMaxPatchVertices + grouping::kRunAlignment, 0.25F);
+  for (std::uint32_t p = 0; p < patches; ++p) {
+    vertices.patches.push_back({p, 1, p * kMaxPatchVertices, 0});
+    vertices.runs.push_back({.vertex_count = kMaxPatchVertices});
+  }
   Mat4 clip_from_object(1.0F);
   clip_from_object[3] = {0.1F, 0.2F, 0.3F, 2.0F};
   const Viewport viewport(kWidth, kHeight);
   static ClipVertices clip;
   static ProjectedVertices projected;
   for (auto _ : state)
-    for (std::size_t p = 0; p < patches; ++p) {
-      const float* first = position.data() + p * kMaxPatchVertices;
-      transformVertices({first, first, first}, kMaxPatchVertices, clip_from_object, clip);
-      projectVertices(clip, kMaxPatchVertices, viewport, projected);
+    for (const grouping::PatchRuns& patch : vertices.patches) {
+      transformPatch(vertices, patch, clip_from_object, clip);
+      projectVertices(clip, 0, kMaxPatchVertices, viewport, projected);
       benchmark::DoNotOptimize(projected);
     }
-  state.counters["vertices/s"] =
-      benchmark::Counter(static_cast<double>(vertices), benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["vertices/s"] = benchmark::Counter(static_cast<double>(patches * kMaxPatchVertices),
+                                                    benchmark::Counter::kIsIterationInvariantRate);
 }
 BENCHMARK(transformAndProject)->Name("pipeline/transform")->ArgName("patches")->Arg(16)->Arg(16384);
 

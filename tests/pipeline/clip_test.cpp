@@ -99,21 +99,4 @@ TEST_CASE("pipeline/clip: a triangle wholly beyond one plane vanishes, one that 
   for (std::size_t i = 0; i < 3; ++i) CHECK(same.corners[i] == inside[i]);
 }
 
-TEST_CASE("pipeline/clip: classification drops a triangle only when all corners share a side") {
-  // Codes of four vertices: inside, left, right, near.
-  const std::int32_t codes[4] = {0, kOutLeft, kOutRight, kOutNear};
-  const std::uint8_t c0[16] = {0, 1, 1, 0};
-  const std::uint8_t c1[16] = {0, 1, 2, 3};
-  const std::uint8_t c2[16] = {0, 1, 0, 0};
-  const std::uint32_t source[4] = {40, 41, 42, 43};
-  static ClassifiedTriangles out;
-  classifyTriangles({c0, c1, c2}, source, 4, codes, out);
-  CHECK(out.outside_count == 1);
-  REQUIRE(out.clipped_count == 1);
-  CHECK(out.clipped[0] == 3);
-  REQUIRE(out.inside.count == 2);
-  CHECK(out.inside.source[0] == 40);
-  CHECK(out.inside.source[1] == 42);
-}
-
 }  // namespace sheaf::pipeline

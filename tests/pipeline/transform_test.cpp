@@ -2,7 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <random>
 #include <vector>
 
@@ -16,18 +18,32 @@ std::uint32_t bits(float f) {
   return std::bit_cast<std::uint32_t>(f);
 }
 
-struct Positions {
-  std::array<std::vector<float>, 3> axis;
-  std::array<const float*, 3> pointers() const { return {axis[0].data(), axis[1].data(), axis[2].data()}; }
-  Vec3 at(std::size_t v) const { return {axis[0][v], axis[1][v], axis[2][v]}; }
+// One patch of `count` vertices in a single run.
+struct OneRun {
+  grouping::VertexRuns vertices;
+
+  explicit OneRun(std::uint32_t count) {
+    vertices.patches.resize(1);
+    vertices.patches[0].run_count = 1;
+    vertices.runs.resize(1);
+    vertices.runs[0].vertex_count = static_cast<std::uint16_t>(count);
+  }
+  grouping::PatchRuns& patch() { return vertices.patches[0]; }
+  grouping::VertexRun& run() { return vertices.runs[0]; }
 };
 
-Positions randomPositions(std::mt19937& rng, std::size_t count) {
+std::vector<float> randomFloats(std::mt19937& rng, std::size_t count) {
   std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
-  Positions p;
-  for (auto& axis : p.axis)
-    for (std::size_t v = 0; v < (count + 15) / 16 * 16; ++v) axis.push_back(v < count ? unit(rng) : axis[count - 1]);
-  return p;
+  std::vector<float> values;
+  for (std::size_t v = 0; v < count + grouping::kRunAlignment; ++v) values.push_back(v < count ? unit(rng) : 0.0F);
+  return values;
+}
+
+OneRun fullRun(std::mt19937& rng, std::uint32_t count, std::uint8_t axis) {
+  OneRun one(count);
+  one.run().axis = axis;
+  for (auto& coordinates : one.vertices.full) coordinates = randomFloats(rng, count);
+  return one;
 }
 
 Mat4 randomMatrix(std::mt19937& rng) {
@@ -38,6 +54,13 @@ Mat4 randomMatrix(std::mt19937& rng) {
   return m;
 }
 
+void checkBits(const ClipVertices& clip, std::uint32_t v, const Vec4& expected) {
+  CHECK(bits(clip.x[v]) == bits(expected.x));
+  CHECK(bits(clip.y[v]) == bits(expected.y));
+  CHECK(bits(clip.z[v]) == bits(expected.z));
+  CHECK(bits(clip.w[v]) == bits(expected.w));
+}
+
 }  // namespace
 
 TEST_CASE("pipeline/transform: every SIMD target equals the references, bit for bit") {
@@ -45,24 +68,22 @@ TEST_CASE("pipeline/transform: every SIMD target equals the references, bit for 
   const Viewport viewport(131, 97);
   for (const std::uint32_t count : {1U, 3U, 15U, 16U, 17U, 100U, 256U}) {
     CAPTURE(count);
-    const Positions positions = randomPositions(rng, count);
+    OneRun one = fullRun(rng, count, static_cast<std::uint8_t>(count % 3));
     const Mat4 clip_from_object = randomMatrix(rng);
     forEachTarget([&] {
       ClipVertices clip;
       ProjectedVertices projected;
-      alignas(64) std::int32_t codes[kMaxPatchVertices];
-      transformVertices(positions.pointers(), count, clip_from_object, clip);
-      projectVertices(clip, count, viewport, projected);
-      const OutcodeSummary summary = outcodeVertices(clip, count, viewport, codes);
+      alignas(64) std::int32_t codes[kVertexSlots];
+      transformPatch(one.vertices, one.patch(), clip_from_object, clip);
+      projectVertices(clip, 0, count, viewport, projected);
+      const OutcodeSummary summary = outcodeVertices(clip, 0, count, viewport, codes);
       std::int32_t all = -1;
       std::int32_t any = 0;
       for (std::uint32_t v = 0; v < count; ++v) {
         CAPTURE(v);
-        const Vec4 expected = transformVertex(positions.at(v), clip_from_object);
-        CHECK(bits(clip.x[v]) == bits(expected.x));
-        CHECK(bits(clip.y[v]) == bits(expected.y));
-        CHECK(bits(clip.z[v]) == bits(expected.z));
-        CHECK(bits(clip.w[v]) == bits(expected.w));
+        const Vec3 position(one.vertices.full[0][v], one.vertices.full[1][v], one.vertices.full[2][v]);
+        const Vec4 expected = transformVertex(position, clip_from_object, one.run().axis);
+        checkBits(clip, v, expected);
         CHECK(codes[v] == outcodeVertex(expected, viewport));
         all &= codes[v];
         any |= codes[v];
@@ -79,6 +100,92 @@ TEST_CASE("pipeline/transform: every SIMD target equals the references, bit for 
   }
 }
 
+TEST_CASE("pipeline/transform: planes and lines equal the reference on every SIMD target, in both forms") {
+  std::mt19937 rng(77);
+  std::uniform_int_distribution<int> word(0, 65535);
+  for (const grouping::ParameterForm form : {grouping::ParameterForm::k16Bit, grouping::ParameterForm::kFloat})
+    for (const grouping::RunKind kind : {grouping::RunKind::kPlane, grouping::RunKind::kLine})
+      for (const std::uint32_t count : {1U, 7U, 16U, 33U, 256U}) {
+        CAPTURE(count);
+        OneRun one(count);
+        grouping::VertexRuns& runs = one.vertices;
+        runs.form = form;
+        runs.step = 1.0F / 4096.0F;
+        one.patch().corner = {-70000, 123456, 3};
+        one.run().kind = kind;
+        one.run().axis = static_cast<std::uint8_t>(count % 3);
+        one.run().plane = 0.7F;
+        if (kind == grouping::RunKind::kLine) {
+          one.run().line = 0;
+          runs.lines = {{Vec3(0.1F, 0.2F, 0.3F), Vec3(0.9F, -0.4F, 0.2F), -0.3F, 1e-5F}};
+        }
+        for (std::size_t k = 0; k < 2; ++k) {
+          runs.parameters[k] = randomFloats(rng, count);
+          for (std::uint32_t v = 0; v < count + grouping::kRunAlignment; ++v)
+            runs.quantised[k].push_back(static_cast<std::uint16_t>(word(rng)));
+        }
+        const Mat4 clip_from_object = randomMatrix(rng);
+        const auto stored = [&](std::uint32_t v) {
+          return form == grouping::ParameterForm::k16Bit
+                     ? StoredParameters{static_cast<float>(runs.quantised[0][v]),
+                                        static_cast<float>(runs.quantised[1][v])}
+                     : StoredParameters{runs.parameters[0][v], runs.parameters[1][v]};
+        };
+        forEachTarget([&] {
+          ClipVertices clip;
+          transformPatch(runs, one.patch(), clip_from_object, clip);
+          for (std::uint32_t v = 0; v < count; ++v) {
+            CAPTURE(v);
+            checkBits(clip, v, transformGrouped(runs, one.patch(), one.run(), stored(v), clip_from_object));
+          }
+        });
+      }
+}
+
+TEST_CASE("pipeline/transform: a vertex on a plane comes out as if it had been transformed in full, bit for bit") {
+  std::mt19937 rng(78);
+  std::uniform_int_distribution<int> word(0, 65535);
+  for (int i = 0; i < 2000; ++i) {
+    grouping::VertexRuns runs;
+    runs.step = std::exp2(static_cast<float>(i % 40) - 30.0F);
+    grouping::PatchRuns patch;
+    for (auto& corner : patch.corner) corner = word(rng) * 128 - 4000000;
+    grouping::VertexRun run{.kind = grouping::RunKind::kPlane, .axis = static_cast<std::uint8_t>(i % 3), .plane = 0.3F};
+    const auto [a, b] = grouping::axesBeside(run.axis);
+    const int s = word(rng), t = word(rng);
+    Vec3 position;
+    position[run.axis] = run.plane;
+    position[static_cast<int>(a)] = static_cast<float>(patch.corner[a] + s) * runs.step;
+    position[static_cast<int>(b)] = static_cast<float>(patch.corner[b] + t) * runs.step;
+    // Decoded by hand above, scaled into the matrix by the kernel.
+    CHECK(double{position[static_cast<int>(a)]} == static_cast<double>(patch.corner[a] + s) * runs.step);
+    runs.patches = {patch};
+    runs.patches[0].run_count = 1;
+    run.vertex_count = 1;
+    runs.runs = {run};
+    runs.quantised[0].assign(17, static_cast<std::uint16_t>(s));
+    runs.quantised[1].assign(17, static_cast<std::uint16_t>(t));
+    const Mat4 clip_from_object = randomMatrix(rng);
+    ClipVertices clip;
+    transformPatch(runs, runs.patches[0], clip_from_object, clip);
+    checkBits(clip, 0, transformVertex(position, clip_from_object, run.axis));
+  }
+}
+
+TEST_CASE("pipeline/transform: part of a run is written and nothing beside it") {
+  std::mt19937 rng(79);
+  OneRun one = fullRun(rng, 100, 0);
+  const Mat4 clip_from_object = randomMatrix(rng);
+  forEachTarget([&] {
+    ClipVertices whole;
+    transformPatch(one.vertices, one.patch(), clip_from_object, whole);
+    ClipVertices part;
+    std::fill(std::begin(part.x), std::end(part.x), 7.0F);
+    transformRun(one.vertices, one.patch(), one.run(), RunStart(one.patch()), 16, 37, clip_from_object, part);
+    for (std::uint32_t v = 0; v < 100; ++v) CHECK(part.x[v] == (v >= 16 && v < 37 ? whole.x[v] : 7.0F));
+  });
+}
+
 TEST_CASE("pipeline/transform: half a subpixel goes to the even one on every target") {
   // x_px * 256 = 0.5, 1.5, 2.5, -0.5: exact in float for a target of two pixels.
   const Viewport viewport(2, 2);
@@ -90,7 +197,7 @@ TEST_CASE("pipeline/transform: half a subpixel goes to the even one on every tar
   }
   forEachTarget([&] {
     ProjectedVertices out;
-    projectVertices(clip, 4, viewport, out);
+    projectVertices(clip, 0, 4, viewport, out);
     CHECK(out.x_fx[0] == 0);
     CHECK(out.x_fx[1] == 2);
     CHECK(out.x_fx[2] == 2);

@@ -184,10 +184,11 @@ void ProjectVertices(const ClipVertices& vertices, std::uint32_t begin, std::uin
     const VF ndc_y = hn::Mul(hn::LoadU(df, vertices.y + v), inv_w);
     const VF x_px = hn::Add(hn::Mul(ndc_x, half_width), half_width);
     const VF y_px = hn::Sub(half_height, hn::Mul(ndc_y, half_height));
-    hn::StoreU(hn::NearestInt(hn::Mul(x_px, subpixels)), di, out.x_fx + v);
-    hn::StoreU(hn::NearestInt(hn::Mul(y_px, subpixels)), di, out.y_fx + v);
-    hn::StoreU(hn::Mul(hn::LoadU(df, vertices.z + v), inv_w), df, out.depth + v);
-    hn::StoreU(inv_w, df, out.inv_w + v);
+    const VF x_fx = hn::BitCast(df, hn::NearestInt(hn::Mul(x_px, subpixels)));
+    const VF y_fx = hn::BitCast(df, hn::NearestInt(hn::Mul(y_px, subpixels)));
+    const VF depth = hn::Mul(hn::LoadU(df, vertices.z + v), inv_w);
+    // Words as they are in memory; only their bits matter.
+    hn::StoreInterleaved4(x_fx, y_fx, depth, inv_w, df, reinterpret_cast<float*>(&out[v]));
   }
 }
 

@@ -100,20 +100,6 @@ HWY_INLINE void LoadQuarters(const std::uint32_t* words, const std::uint32_t* id
   }
 }
 
-/// Rows of four words to columns, in each 128-bit block.
-HWY_INLINE void TransposeBlocks(VU row0, VU row1, VU row2, VU row3, VU& a, VU& b, VU& c, VU& d) {
-  const DU du;
-  const hn::Repartition<std::uint64_t, DU> d64;
-  const auto lower01 = hn::BitCast(d64, hn::InterleaveLower(du, row0, row1));
-  const auto upper01 = hn::BitCast(d64, hn::InterleaveUpper(du, row0, row1));
-  const auto lower23 = hn::BitCast(d64, hn::InterleaveLower(du, row2, row3));
-  const auto upper23 = hn::BitCast(d64, hn::InterleaveUpper(du, row2, row3));
-  a = hn::BitCast(du, hn::InterleaveLower(d64, lower01, lower23));
-  b = hn::BitCast(du, hn::InterleaveUpper(d64, lower01, lower23));
-  c = hn::BitCast(du, hn::InterleaveLower(d64, upper01, upper23));
-  d = hn::BitCast(du, hn::InterleaveUpper(d64, upper01, upper23));
-}
-
 /// The sixteen words of each lane's record, in order: loads of whole records and a transposition, which are faster than
 /// gathers that read one word at a time.
 HWY_INLINE void LoadRecords(const std::uint32_t* words, const std::uint32_t* ids, VU& w0, VU& w1, VU& w2, VU& w3,

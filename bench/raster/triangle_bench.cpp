@@ -21,8 +21,7 @@ constexpr std::uint32_t kPatchTriangles = 80;
 
 /// Front-facing triangles with legs of `size` pixels, turned at random, in patches that lie together as in a mesh.
 struct Workload {
-  std::vector<std::int32_t> x_fx, y_fx;
-  std::vector<float> depth, inv_w;
+  std::vector<ScreenVertex> vertices;
   std::array<std::vector<std::uint8_t>, 3> corner;
   std::vector<std::uint32_t> source;
   std::uint32_t patches;
@@ -54,10 +53,7 @@ struct Workload {
     addVertex(x, y, z);
   }
   void addVertex(double x, double y, float z) {
-    x_fx.push_back(static_cast<std::int32_t>(x * kSubpixels));
-    y_fx.push_back(static_cast<std::int32_t>(y * kSubpixels));
-    depth.push_back(z);
-    inv_w.push_back(1.0F);
+    vertices.push_back({static_cast<std::int32_t>(x * kSubpixels), static_cast<std::int32_t>(y * kSubpixels), z, 1.0F});
   }
 
   SetupCounts setUp(Binner& binner) const {
@@ -69,7 +65,7 @@ struct Workload {
     for (std::uint32_t p = 0; p < patches; ++p) {
       const std::size_t first = std::size_t{p} * 3 * kPatchTriangles;
       triangles.first_vertex = static_cast<std::uint32_t>(first);
-      setupTriangles({&x_fx[first], &y_fx[first], &depth[first], &inv_w[first]}, triangles, binner, counts);
+      setupTriangles(&vertices[first], triangles, binner, counts);
     }
     return counts;
   }

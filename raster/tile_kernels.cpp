@@ -197,9 +197,11 @@ struct BlockPixels {
   int begin, end;
 };
 
-// Draws those of the pixels that N edges leave covered; returns a depth that none of them is behind.
+// Draws those of the pixels that N edges (with their EdgeLanes()) leave covered; returns a depth that none of them is
+// behind.
 template <int N>
-HWY_INLINE VF DrawPixels(const TriangleInTile& in, const BlockPixels& pixels, TileState& state) {
+HWY_INLINE VF DrawPixels(const TriangleInTile& in, VI lanes0, VI lanes1, VI lanes2, const BlockPixels& pixels,
+                         TileState& state) {
   // A vector is a piece of a row or a few whole rows: edges and depths move on by a row, or a few, at a time.
   constexpr int kLanes = static_cast<int>(hn::MaxLanes(di));
   constexpr int kColumns = std::min(kLanes, kBlockSize);
@@ -220,13 +222,13 @@ HWY_INLINE VF DrawPixels(const TriangleInTile& in, const BlockPixels& pixels, Ti
 
   VF deepest = hn::Set(df, 1.0F);
   for (int column = 0; column < kBlockSize; column += kColumns) {
-    const auto edge_at_first = [&](int i) HWY_ATTR {
+    const auto edge_at_first = [&](int i, VI lanes) HWY_ATTR {
       const std::int32_t at = edges.c[i] + edges.a[i] * (pixels.x + column) + edges.b[i] * (pixels.y + first_row);
-      return hn::Add(hn::Set(di, at), EdgeLanes(edges.a[i], edges.b[i]));
+      return hn::Add(hn::Set(di, at), lanes);
     };
-    VI e0 = N > 0 ? edge_at_first(0) : hn::Zero(di);
-    VI e1 = N > 1 ? edge_at_first(1) : hn::Zero(di);
-    VI e2 = N > 2 ? edge_at_first(2) : hn::Zero(di);
+    VI e0 = N > 0 ? edge_at_first(0, lanes0) : hn::Zero(di);
+    VI e1 = N > 1 ? edge_at_first(1, lanes1) : hn::Zero(di);
+    VI e2 = N > 2 ? edge_at_first(2, lanes2) : hn::Zero(di);
     const VF dx =
         hn::Add(hn::Set(df, static_cast<float>(in.x0 + pixels.x + column)), hn::Load(df, kBlockOffsets.column));
     VF dy = hn::Add(hn::Set(df, static_cast<float>(in.y0 + pixels.y + first_row)), hn::Load(df, kBlockOffsets.row));
@@ -250,11 +252,15 @@ HWY_INLINE VF DrawPixels(const TriangleInTile& in, const BlockPixels& pixels, Ti
 // Triangles within a few blocks: every vector under the box is tested against all edges.
 void DrawMedium(const TriangleInTile& in, const TileBox& box, TileState& state) {
   constexpr int rows = std::max(1, static_cast<int>(hn::MaxLanes(di)) / kBlockSize);
+  const VI lanes0 = EdgeLanes(in.edges.a[0], in.edges.b[0]);
+  const VI lanes1 = EdgeLanes(in.edges.a[1], in.edges.b[1]);
+  const VI lanes2 = EdgeLanes(in.edges.a[2], in.edges.b[2]);
   for (int y = box.y_min & ~7; y <= box.y_max; y += kBlockSize) {
     const int begin = (std::max(box.y_min - y, 0) * kBlockSize) & ~(rows * kBlockSize - 1);
     const int end = (std::min(box.y_max - y, kBlockSize - 1) + 1) * kBlockSize;
     for (int x = box.x_min & ~7; x <= box.x_max; x += kBlockSize)
-      if (!(in.triangle.depth.hi < state.farthest[y + x / kBlockSize])) DrawPixels<3>(in, {x, y, begin, end}, state);
+      if (!(in.triangle.depth.hi < state.farthest[y + x / kBlockSize]))
+        DrawPixels<3>(in, lanes0, lanes1, lanes2, {x, y, begin, end}, state);
   }
 }
 
@@ -262,13 +268,17 @@ void DrawMedium(const TriangleInTile& in, const TileBox& box, TileState& state) 
 template <int N>
 void DrawBig(const TriangleInTile& in, const TileBox& box, TileState& state) {
   const BlockMasks blocks = ClassifyBlocks(in.edges);
+  const VI lanes0 = N > 0 ? EdgeLanes(in.edges.a[0], in.edges.b[0]) : hn::Zero(di);
+  const VI lanes1 = N > 1 ? EdgeLanes(in.edges.a[1], in.edges.b[1]) : hn::Zero(di);
+  const VI lanes2 = N > 2 ? EdgeLanes(in.edges.a[2], in.edges.b[2]) : hn::Zero(di);
   for (std::uint64_t rest = blocks.touched & BlocksUnder(box); rest != 0; rest &= rest - 1) {
     const int block = std::countr_zero(rest);
     if (in.triangle.depth.hi < state.farthest[block]) continue;
     const BlockPixels pixels{(block % kBlocksPerTileSide) * kBlockSize, (block / kBlocksPerTileSide) * kBlockSize, 0,
                              kBlockPixels};
     const bool full = (blocks.full >> block & 1U) != 0;
-    const VF deepest = full ? DrawPixels<0>(in, pixels, state) : DrawPixels<N>(in, pixels, state);
+    const VF deepest = full ? DrawPixels<0>(in, lanes0, lanes1, lanes2, pixels, state)
+                            : DrawPixels<N>(in, lanes0, lanes1, lanes2, pixels, state);
     state.farthest[block] = hn::GetLane(hn::MinOfLanes(df, deepest));
   }
 }

@@ -247,7 +247,7 @@ class PatchDrawer {
     std::array<raster::ScreenCorner, 9> screen;
     for (int i = 0; i < polygon.count; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      const ProjectedVertex p = projectVertex(polygon.corners[k], viewport_);
+      const raster::ScreenVertex p = projectVertex(polygon.corners[k], viewport_);
       screen[k] = {p.x_fx, p.y_fx, p.depth};
     }
 
@@ -299,8 +299,7 @@ class PatchDrawer {
 
   void setUp(const raster::PatchTriangles& part) {
     if (part.count == 0) return;
-    const ProjectedVertices& p = worker_.projected;
-    raster::setupTriangles({p.x_fx, p.y_fx, p.depth, p.inv_w}, part, worker_.binner, counts_);
+    raster::setupTriangles(worker_.projected.data(), part, worker_.binner, counts_);
   }
 
   static constexpr std::uint32_t kRebuiltAtOnce = 16;

@@ -79,7 +79,7 @@ void gatherAttributes(const mesh::Mesh& mesh, const grouping::PatchSet& set, std
     const std::uint32_t v = set.vertex_source[slot];
     if (!out.position[0].empty())
       for (int k = 0; k < 3; ++k) out.position[static_cast<std::size_t>(k)][slot] = mesh.positions[v][k];
-    if (!mesh.normals.empty()) out.normal[slot] = raster::packNormal(mesh.normals[v]);
+    if (!mesh.normals.empty()) out.normal[slot] = raster::vertexNormal(mesh.normals[v]);
     if (!mesh.texcoords.empty())
       for (int k = 0; k < 2; ++k) out.texcoord[static_cast<std::size_t>(k)][slot] = mesh.texcoords[v][k];
     if (!mesh.colors.empty()) {

@@ -6,6 +6,7 @@
 
 #include "core/math.h"
 #include "grouping/vertex_runs.h"
+#include "raster/setup.h"
 
 namespace sheaf::pipeline {
 
@@ -49,12 +50,7 @@ struct alignas(64) ClipVertices {
 };
 
 /// Screen coordinates of a patch; meaningless where w <= 0.
-struct alignas(64) ProjectedVertices {
-  std::int32_t x_fx[kVertexSlots];
-  std::int32_t y_fx[kVertexSlots];
-  float depth[kVertexSlots];
-  float inv_w[kVertexSlots];
-};
+using ProjectedVertices = std::array<raster::ScreenVertex, kVertexSlots>;
 
 struct OutcodeSummary {
   std::int32_t all;  ///< AND over the vertices
@@ -100,11 +96,7 @@ struct StoredParameters {
 };
 Vec4 transformGrouped(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch,
                       const grouping::VertexRun& run, const StoredParameters& parameters, const Mat4& clip_from_object);
-struct ProjectedVertex {
-  std::int32_t x_fx, y_fx;
-  float depth, inv_w;
-};
-ProjectedVertex projectVertex(const Vec4& clip, const Viewport& viewport);
+raster::ScreenVertex projectVertex(const Vec4& clip, const Viewport& viewport);
 std::int32_t outcodeVertex(const Vec4& clip, const Viewport& viewport);
 
 }  // namespace sheaf::pipeline

@@ -44,10 +44,10 @@ struct ToScreen {
     const VF subpixels = hn::Set(df, static_cast<float>(raster::kSubpixels));
     const VF x_px = hn::Add(hn::Mul(hn::Mul(x, inv_w), half_width), half_width);
     const VF y_px = hn::Sub(half_height, hn::Mul(hn::Mul(y, inv_w), half_height));
-    hn::StoreU(hn::NearestInt(hn::Mul(x_px, subpixels)), di, out.x_fx + at);
-    hn::StoreU(hn::NearestInt(hn::Mul(y_px, subpixels)), di, out.y_fx + at);
-    hn::StoreU(hn::Mul(z, inv_w), df, out.depth + at);
-    hn::StoreU(inv_w, df, out.inv_w + at);
+    const VF x_fx = hn::BitCast(df, hn::NearestInt(hn::Mul(x_px, subpixels)));
+    const VF y_fx = hn::BitCast(df, hn::NearestInt(hn::Mul(y_px, subpixels)));
+    // Words as they are in memory; only their bits matter.
+    hn::StoreInterleaved4(x_fx, y_fx, hn::Mul(z, inv_w), inv_w, df, reinterpret_cast<float*>(&out[at]));
   }
 };
 

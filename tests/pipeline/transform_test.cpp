@@ -96,15 +96,13 @@ TEST_CASE("pipeline/transform: every SIMD target equals the references, bit for 
         all &= codes[v];
         any |= codes[v];
         if (expected.w < 0.01F) continue;  // meaningless, and outside the range of fixed point
-        const ProjectedVertex p = projectVertex(expected, viewport);
-        CHECK(projected.x_fx[v] == p.x_fx);
-        CHECK(projected.y_fx[v] == p.y_fx);
-        CHECK(bits(projected.depth[v]) == bits(p.depth));
-        CHECK(bits(projected.inv_w[v]) == bits(p.inv_w));
-        CHECK(at_once.x_fx[v] == p.x_fx);
-        CHECK(at_once.y_fx[v] == p.y_fx);
-        CHECK(bits(at_once.depth[v]) == bits(p.depth));
-        CHECK(bits(at_once.inv_w[v]) == bits(p.inv_w));
+        const raster::ScreenVertex p = projectVertex(expected, viewport);
+        for (const raster::ScreenVertex& drawn : {projected[v], at_once[v]}) {
+          CHECK(drawn.x_fx == p.x_fx);
+          CHECK(drawn.y_fx == p.y_fx);
+          CHECK(bits(drawn.depth) == bits(p.depth));
+          CHECK(bits(drawn.inv_w) == bits(p.inv_w));
+        }
       }
       CHECK(summary.all == all);
       CHECK(summary.any == any);
@@ -209,20 +207,20 @@ TEST_CASE("pipeline/transform: half a subpixel goes to the even one on every tar
   forEachTarget([&] {
     ProjectedVertices out;
     projectVertices(clip, 0, 4, viewport, out);
-    CHECK(out.x_fx[0] == 0);
-    CHECK(out.x_fx[1] == 2);
-    CHECK(out.x_fx[2] == 2);
-    CHECK(out.x_fx[3] == 0);
+    CHECK(out[0].x_fx == 0);
+    CHECK(out[1].x_fx == 2);
+    CHECK(out[2].x_fx == 2);
+    CHECK(out[3].x_fx == 0);
   });
 }
 
 TEST_CASE("pipeline/transform: corners of the view volume land on the corners of the picture") {
   const Viewport viewport(640, 480);
-  const ProjectedVertex top_left = projectVertex({-2.0F, 2.0F, 1.0F, 2.0F}, viewport);
+  const raster::ScreenVertex top_left = projectVertex({-2.0F, 2.0F, 1.0F, 2.0F}, viewport);
   CHECK(top_left.x_fx == 0);
   CHECK(top_left.y_fx == 0);
   CHECK(top_left.depth == 0.5F);
-  const ProjectedVertex bottom_right = projectVertex({3.0F, -3.0F, 0.0F, 3.0F}, viewport);
+  const raster::ScreenVertex bottom_right = projectVertex({3.0F, -3.0F, 0.0F, 3.0F}, viewport);
   CHECK(bottom_right.x_fx == 640 * raster::kSubpixels);
   CHECK(bottom_right.y_fx == 480 * raster::kSubpixels);
 }

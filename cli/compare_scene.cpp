@@ -47,7 +47,7 @@ std::vector<std::string> beyondInAnyView(const Limits& limits, const pipeline::C
 
 void addSceneCompareOptions(CLI::App& command, SceneCompareArguments& a) {
   addPictureOptions(command, a);
-  addGroupingOptions(command, a.grouping);
+  addGroupingOptions(command, a.grouping, pipeline::Grouping::kPlanar);
   addCameraOptions(command, a);
   command
       .add_option("--views", a.views,
@@ -61,7 +61,7 @@ void addSceneCompareOptions(CLI::App& command, SceneCompareArguments& a) {
 
 void understandSceneCompare(const SceneCompareArguments& arguments, SceneCompareRequest& request) {
   understandScene(arguments, request);
-  request.grouping = understandGrouping(arguments.grouping);
+  request.grouping = understandGrouping(arguments.grouping, pipeline::Grouping::kPlanar);
   if (arguments.views) request.views = understandViews(*arguments.views, request.view);
 }
 

@@ -2,7 +2,7 @@
 
 usage: check_reports.py SHEAF CHROMIUM [FOLDER]
 
-Makes reports of small scenes, and looks at each as a phone and as a desk would show it, light and dark: no errors on the
+Makes reports of small scenes, looks at each as a phone and as a desk would show it, light and dark: no errors on the
 console, nothing loaded from elsewhere, nothing wider than the screen, no layout that shifts, charts and pictures drawn.
 FOLDER: reports and screenshots are kept there. Prints one line per fault; exits with 1 if there are any.
 

@@ -140,17 +140,20 @@ void assembleGroups(std::span<const Vec3> positions, std::span<const std::uint32
   markDefining(out);
   out.s.resize(out.members.size());
   out.t.resize(out.members.size());
-  for (VertexGroup& g : out.groups) {
+  // By vertex and not by group: members of a group ascend, and positions and ellipsoids are read as they lie in memory.
+  std::vector<std::uint32_t> next(out.groups.size());
+  for (std::size_t g = 0; g < next.size(); ++g) next[g] = out.groups[g].first_member;
+  for (const std::uint32_t v : in_use) {
+    if (out.owner[v] == kNoIndex) continue;
+    assert(out.state[v] == VertexState::kFree);
+    VertexGroup& g = out.groups[out.owner[v]];
     const PlaneFrame* frame = g.kind == GroupKind::kPlane ? &out.planes[g.plane] : nullptr;
-    for (std::uint32_t m = g.first_member; m < g.first_member + g.member_count; ++m) {
-      const std::uint32_t v = out.members[m];
-      assert(out.state[v] == VertexState::kFree);
-      const auto [s, t] = placement.parametersOf(g, frame, v, positions[v]);
-      out.s[m] = s, out.t[m] = t;
-      extendRanges(g, s, t);
-      out.state[v] = VertexState::kGrouped;
-      out.positions[v] = pointOn(g, s, t);
-    }
+    const auto [s, t] = placement.parametersOf(g, frame, v, positions[v]);
+    const std::uint32_t m = next[out.owner[v]]++;
+    out.s[m] = s, out.t[m] = t;
+    extendRanges(g, s, t);
+    out.state[v] = VertexState::kGrouped;
+    out.positions[v] = pointOn(g, s, t);
   }
 }
 

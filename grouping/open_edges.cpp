@@ -35,9 +35,10 @@ std::vector<bool> unbalancedVertices(const mesh::Mesh& mesh) {
     v = (v ^ (v >> 27U)) * 0x94D049BB133111EBULL;
     return v ^ (v >> 31U);
   };
-  std::vector<std::uint64_t> balance(mesh.vertexCount(), 0);
+  std::vector<std::uint64_t> balance(mesh.vertexCount(), 0), hashes(mesh.vertexCount());
+  for (std::size_t v = 0; v < hashes.size(); ++v) hashes[v] = hash(v);
   for (const mesh::Triangle& t : mesh.triangles) {
-    const std::uint64_t h[3] = {hash(t[0]), hash(t[1]), hash(t[2])};
+    const std::uint64_t h[3] = {hashes[t[0]], hashes[t[1]], hashes[t[2]]};
     for (int k = 0; k < 3; ++k) balance[t[k]] += h[(k + 1) % 3] - h[(k + 2) % 3];
   }
   std::vector<bool> unbalanced(mesh.vertexCount());

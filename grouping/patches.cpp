@@ -6,6 +6,8 @@
 #include <cmath>
 #include <span>
 
+#include "grouping/normal_cone.h"
+
 namespace sheaf::grouping {
 namespace {
 
@@ -341,40 +343,6 @@ std::vector<Range> splitAll(const Mesh& mesh, const PatchLimits& limits, std::sp
   std::vector<Range> all;
   for (const std::vector<Range>& part : leaves) all.insert(all.end(), part.begin(), part.end());
   return all;
-}
-
-// Centre of a small ball around the normals, by steps towards the farthest (Badoiu and Clarkson 2003): its direction is
-// the axis of a narrower cone than that of the mean normal.
-NormalCone coneOf(std::span<const DVec3> normals) {
-  DVec3 center(0.0);
-  for (const DVec3& n : normals) center += n;
-  if (normals.empty() || center == DVec3(0.0)) return {};
-  center /= static_cast<double>(normals.size());
-  Vec3 best_axis(0.0F);
-  double best_cos = -1.0;
-  constexpr int kSteps = 6;
-  for (int step = 0; step < kSteps; ++step) {
-    const double length = glm::length(center);
-    if (!(length > 1e-6)) break;
-    const Vec3 axis(center * (1.0 / length));
-    const DVec3* farthest = &normals[0];
-    double least = 2.0;
-    for (const DVec3& n : normals) {
-      const double cosine = glm::dot(n, DVec3(axis));
-      if (cosine < least) farthest = &n;
-      least = std::min(least, cosine);
-    }
-    if (least > best_cos) {
-      best_cos = least;
-      best_axis = axis;
-    }
-    center += (*farthest - center) * (1.0 / (step + 3));
-  }
-  // Room for whoever evaluates the cone in float. A cone near a half-space says nothing worth testing.
-  const double cosine = best_cos - 1e-6;
-  if (!(cosine > 1e-3)) return {};
-  const auto sine = static_cast<float>(std::sqrt(1.0 - cosine * cosine));
-  return {best_axis, std::nextafter(sine, 2.0F)};
 }
 
 std::uint32_t alignUp(std::uint32_t count) {

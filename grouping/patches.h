@@ -24,6 +24,7 @@ inline constexpr std::uint32_t kRunAlignment = 16;
 struct NormalCone {
   Vec3 axis{0.0F, 0.0F, 1.0F};
   float sin_angle = 1.0F;
+  bool operator==(const NormalCone&) const = default;
 };
 
 /// A piece of a mesh, the unit of work of the geometry stage.

@@ -111,14 +111,17 @@ void useDynamically(Greedy<Query>& greedy, std::span<const std::uint32_t> keys) 
 template <class Query>
 Findings search(const Slabs& slabs, std::span<const std::uint32_t> in_use, std::size_t mesh_vertex_count,
                 TableKey key) {
-  Greedy<Query> greedy(slabs, in_use, mesh_vertex_count);
   if (key == TableKey::kAuto) key = slabs.vertex_count <= kAutoUnionVertices ? TableKey::kUnion : TableKey::kSum;
   const std::vector<std::uint32_t> keys = key == TableKey::kSum ? sumKeys(slabs) : unionKeys(slabs);
   if (key == TableKey::kDynamic) {
+    Greedy<Query> greedy(slabs, in_use, mesh_vertex_count);
     useDynamically(greedy, keys);
     return greedy.finish();
   }
-  for (const std::uint32_t v : byDescendingKey(keys)) {
+  // Sorting the table is where most memory is in use: the search is set up after it.
+  const std::vector<std::uint32_t> table = byDescendingKey(keys);
+  Greedy<Query> greedy(slabs, in_use, mesh_vertex_count);
+  for (const std::uint32_t v : table) {
     if (keys[v] == 0) break;  // the rest takes nothing
     if (greedy.isLive(v)) greedy.use(v);
   }

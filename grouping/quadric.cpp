@@ -5,6 +5,7 @@
 #include <array>
 #include <cassert>
 #include <limits>
+#include <optional>
 
 #include "grouping/open_edges.h"
 
@@ -15,32 +16,35 @@ constexpr double kNoAltitude = std::numeric_limits<double>::infinity();
 
 // What the faces around each vertex add up to.
 struct FaceSums {
-  std::vector<Sym3> quadric;     // unit normals, n n'
-  std::vector<double> altitude;  // the smallest; kNoAltitude without faces
+  std::vector<Sym3> quadric;      // unit normals, n n'
+  std::vector<double> altitude2;  // the smallest, squared; kNoAltitude without faces
 };
 
+// Squares, so that no root has to be taken.
 struct FacePlane {
-  DVec3 normal{0.0};  // unit, or 0 for a face without area
-  double altitude = 0.0;
+  DVec3 normal{0.0};       // twice the area long
+  double length2 = 0.0;    // of the normal
+  double altitude2 = 0.0;  // of the smallest altitude; 0 for a face without area
 };
 
 FacePlane facePlane(const mesh::Mesh& mesh, const mesh::Triangle& t) {
   const DVec3 a(mesh.positions[t[0]]), b(mesh.positions[t[1]]), c(mesh.positions[t[2]]);
   const DVec3 ab = b - a, bc = c - b, ca = a - c;
   const DVec3 normal = glm::cross(ab, -ca);
-  const double twice_area = glm::length(normal);
-  if (!(twice_area > 0.0)) return {};
-  const double longest = std::sqrt(std::max({glm::dot(ab, ab), glm::dot(bc, bc), glm::dot(ca, ca)}));
-  return {normal / twice_area, twice_area / longest};
+  const double length2 = glm::dot(normal, normal);
+  if (!(length2 > 0.0)) return {};
+  return {normal, length2, length2 / std::max({glm::dot(ab, ab), glm::dot(bc, bc), glm::dot(ca, ca)})};
 }
 
 FaceSums sumFaces(const mesh::Mesh& mesh) {
   FaceSums sums{std::vector<Sym3>(mesh.vertexCount()), std::vector<double>(mesh.vertexCount(), kNoAltitude)};
   for (const mesh::Triangle& t : mesh.triangles) {
     const FacePlane face = facePlane(mesh, t);
+    Sym3 plane;
+    if (face.length2 > 0.0) plane.addOuter(face.normal, 1.0 / face.length2);
     for (const std::uint32_t v : t) {
-      sums.altitude[v] = std::min(sums.altitude[v], face.altitude);
-      sums.quadric[v].addOuter(face.normal);  // adds nothing for a face without area
+      sums.altitude2[v] = std::min(sums.altitude2[v], face.altitude2);
+      sums.quadric[v].add(plane);
     }
   }
   return sums;
@@ -73,29 +77,6 @@ Eigen3 descending(const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>& solver) 
   return e;
 }
 
-bool isOrthonormal(const DMat3& m) {
-  const DMat3 product = glm::transpose(m) * m;
-  double error = 0.0;
-  for (int c = 0; c < 3; ++c)
-    for (int r = 0; r < 3; ++r) error = std::max(error, std::abs(product[c][r] - (c == r ? 1.0 : 0.0)));
-  return error <= 1e-10;
-}
-
-// The direct solver takes less than half the time of the iterative one, but loses digits where eigenvalues are close.
-// What it gives is checked, and solved again if need be.
-Eigen3 quickEigenDecomposition(const Sym3& m) {
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(matrixOf(m));
-  const Eigen3 e = descending(solver);
-  double residual = 0.0;
-  for (int k = 0; k < 3; ++k) {
-    const DVec3 r = m.times(e.vectors[k]) - e.values[k] * e.vectors[k];
-    residual = std::max(residual, glm::dot(r, r));
-  }
-  const double allowed = 1e-10 * m.trace();
-  return residual <= allowed * allowed && isOrthonormal(e.vectors) ? e : eigenDecomposition(m);
-}
-
 bool isPositiveDefinite(const Sym3& m) {
   return m.xx > 0.0 && m.xx * m.yy - m.xy * m.xy > 0.0 && m.determinant() > 0.0;
 }
@@ -109,26 +90,72 @@ Sym3 scaled(const Sym3& m, double f) {
   return {f * m.xx, f * m.xy, f * m.xz, f * m.yy, f * m.yz, f * m.zz};
 }
 
-// R with no half-axis above r_max. Many vertices need no eigenvectors: either every half-axis is limited, which leaves
-// a sphere, or none is.
-Sym3 limitedReach(const Sym3& a, double eps, double r_max) {
-  if (!(r_max > 0.0) || eps == 0.0) return {};
-  const double floor = (eps / r_max) * (eps / r_max);
+struct Eigenpair {
+  double value;
+  DVec3 vector;  // unit
+};
+
+// The largest eigenvalue of a matrix that has no other positive one. Newton's method comes down upon the largest root
+// of the characteristic polynomial from the bound that mean and variance of the eigenvalues give, which is nearly exact
+// where a surface is nearly flat; the vector is a column of the adjugate. Where another eigenvalue is near, both are
+// near 0, and so is what an inexact vector does to value * vector * vector'. Nothing if the vector is not good enough,
+// which takes an eigenvalue that is nearly 0 beside a large one.
+std::optional<Eigenpair> lonePositive(const Sym3& m) {
+  const double c2 = m.trace(), c0 = m.determinant();
+  const double c1 = m.xx * m.yy - m.xy * m.xy + m.xx * m.zz - m.xz * m.xz + m.yy * m.zz - m.yz * m.yz;
+  const double norm = std::sqrt(std::max(0.0, c2 * c2 - 2.0 * c1));  // of Frobenius
+  double x = (c2 + 2.0 * std::sqrt(std::max(0.0, c2 * c2 - 3.0 * c1))) / 3.0;
+  for (int i = 0; i < 40; ++i) {
+    const double step = (((x - c2) * x + c1) * x - c0) / ((3.0 * x - 2.0 * c2) * x + c1);
+    x -= step;
+    // Convergence is quadratic. Three steps nearly always suffice; asking earlier only makes branches hard to predict.
+    if (i >= 2 && !(step > 1e-8 * norm)) break;
+  }
+  const DVec3 r0(m.xx - x, m.xy, m.xz), r1(m.xy, m.yy - x, m.yz), r2(m.xz, m.yz, m.zz - x);
+  DVec3 vector(0.0);
+  for (const DVec3& v : {glm::cross(r0, r1), glm::cross(r1, r2), glm::cross(r2, r0)})
+    if (glm::dot(v, v) > glm::dot(vector, vector)) vector = v;
+  vector *= 1.0 / glm::length(vector);
+  const DVec3 image = m.times(vector);
+  const double value = glm::dot(vector, image);
+  const DVec3 residual = image - value * vector;
+  if (!(glm::dot(residual, residual) <= 1e-24 * norm * norm)) return std::nullopt;
+  return Eigenpair{value, vector};
+}
+
+// The smallest matrix that is above both m and d I; neither is above the other.
+Sym3 upperBound(const Sym3& m, double d) {
+  // m - d I has eigenvalues of both signs. Its determinant tells which sign only one of them has.
+  const Sym3 above = lessOnDiagonal(m, d);
+  const bool one_is_positive = above.determinant() > 0.0;
+  const std::optional<Eigenpair> lone = lonePositive(one_is_positive ? above : scaled(above, -1.0));
+  if (!lone) {
+    Eigen3 e = eigenDecomposition(m);
+    for (int k = 0; k < 3; ++k) e.values[k] = std::max(e.values[k], d);
+    return compose(e);
+  }
+  Sym3 bound = one_is_positive ? Sym3::scaledIdentity(d) : m;
+  bound.addOuter(lone->vector, lone->value);
+  return bound;
+}
+
+// R with no half-axis above r_max, given as its square. Many vertices need no eigenvectors: either every half-axis is
+// limited, which leaves a sphere, or none is.
+Sym3 limitedReach(const Sym3& a, double eps, double r_max2) {
+  if (!(r_max2 > 0.0) || eps == 0.0) return {};
+  const double floor = eps * eps / r_max2;
   const Sym3 above = lessOnDiagonal(a, floor);
-  if (a.trace() <= floor || isPositiveDefinite(scaled(above, -1.0))) return Sym3::scaledIdentity(r_max * r_max);
-  if (isPositiveDefinite(above)) return scaled(inverse(a), eps * eps);
-  Eigen3 e = quickEigenDecomposition(a);
-  for (int k = 0; k < 3; ++k) e.values[k] = eps * eps / std::max(e.values[k], floor);
-  return compose(e);
+  if (a.trace() <= floor || isPositiveDefinite(scaled(above, -1.0))) return Sym3::scaledIdentity(r_max2);
+  return scaled(inverse(isPositiveDefinite(above) ? a : upperBound(a, floor)), eps * eps);
 }
 
 std::vector<Sym3> safeEllipsoids(const mesh::Mesh& mesh, double eps) {
   FaceSums sums = sumFaces(mesh);
   addBoundaryPlanes(mesh, kBoundaryWeight, sums.quadric);
   for (std::size_t v = 0; v < sums.quadric.size(); ++v)
-    sums.quadric[v] = sums.altitude[v] == kNoAltitude
+    sums.quadric[v] = sums.altitude2[v] == kNoAltitude
                           ? Sym3::scaledIdentity(eps * eps)
-                          : limitedReach(sums.quadric[v], eps, kSafeReach * sums.altitude[v]);
+                          : limitedReach(sums.quadric[v], eps, kSafeReach * kSafeReach * sums.altitude2[v]);
   return std::move(sums.quadric);
 }
 

@@ -25,6 +25,10 @@ struct Sym3 {
   DVec3 times(const DVec3& v) const {
     return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z, xz * v.x + yz * v.y + zz * v.z};
   }
+  void add(const Sym3& m) {
+    xx += m.xx, xy += m.xy, xz += m.xz;
+    yy += m.yy, yz += m.yz, zz += m.zz;
+  }
   /// this += weight * n n'
   void addOuter(const DVec3& n, double weight = 1.0);
   bool operator==(const Sym3&) const = default;

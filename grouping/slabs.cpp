@@ -38,6 +38,10 @@ std::uint32_t sortableBits(float f) {
   return (bits & 0x80000000U) != 0 ? ~bits : bits | 0x80000000U;
 }
 
+float numberOfBits(std::uint32_t sortable) {
+  return std::bit_cast<float>((sortable & 0x80000000U) != 0 ? sortable & 0x7FFFFFFFU : ~sortable);
+}
+
 SlabOrder orderAlong(const Slabs& slabs, std::uint32_t axis) {
   std::vector<SortItem> items(slabs.vertex_count);
   for (std::uint32_t v = 0; v < slabs.vertex_count; ++v) items[v] = {sortableBits(slabs.xOf(v, axis)), v};
@@ -47,7 +51,7 @@ SlabOrder orderAlong(const Slabs& slabs, std::uint32_t axis) {
   order.x.resize(items.size());
   for (std::size_t i = 0; i < items.size(); ++i) {
     order.vertex[i] = items[i].value;
-    order.x[i] = slabs.xOf(items[i].value, axis);
+    order.x[i] = numberOfBits(items[i].key);
   }
   if (slabs.half.empty()) return order;
   order.half.resize(items.size());

@@ -171,6 +171,7 @@ class PatchFiller {
     if (out_.form == ParameterForm::k16Bit) findCorner(at, vertex_count);
     corner_ = at.corner;
     full_ = at.first_full;
+    full_stride_ = at.full_stride;
     parameter_ = at.first_parameter;
     const std::uint32_t* next = source_;
     for (std::uint32_t r = at.first_run; r < at.first_run + at.run_count; ++r) {
@@ -202,29 +203,27 @@ class PatchFiller {
   }
 
   void storeFull(std::uint32_t v) {
-    for (std::size_t k = 0; k < 3; ++k) out_.full[k][full_] = placed_.positions[v][static_cast<int>(k)];
+    for (std::size_t k = 0; k < 3; ++k) out_.full[full_ + k * full_stride_] = placed_.positions[v][static_cast<int>(k)];
     ++full_;
   }
 
   void storeOnPlane(std::uint32_t v, std::size_t axis) {
-    const auto [first, second] = axesBeside(axis);
-    const std::size_t axes[2] = {first, second};
-    for (std::size_t i = 0; i < 2; ++i) {
-      if (out_.form == ParameterForm::kFloat)
-        out_.parameters[i][parameter_] = placed_.positions[v][static_cast<int>(axes[i])];
-      else
-        out_.quantised[i][parameter_] = static_cast<std::uint16_t>(gridNumber(v, axes[i]) - corner_[axes[i]]);
-    }
+    const auto [i, j] = axesBeside(axis);
+    const Vec3& p = placed_.positions[v];
+    if (out_.form == ParameterForm::kFloat)
+      out_.parameters[parameter_] = {p[static_cast<int>(i)], p[static_cast<int>(j)]};
+    else
+      out_.quantised[parameter_] = static_cast<std::uint32_t>(gridNumber(v, i) - corner_[i]) |
+                                   static_cast<std::uint32_t>(gridNumber(v, j) - corner_[j]) << 16;
     ++parameter_;
   }
 
   void storeOnLine(std::uint32_t v, const RunLine& line) {
     const float s = placed_.places[v].s;
     if (out_.form == ParameterForm::kFloat)
-      out_.parameters[0][parameter_] = s;
-    else
-      out_.quantised[0][parameter_] =
-          line.ds > 0.0F ? static_cast<std::uint16_t>(std::nearbyint((s - line.s0) / line.ds)) : std::uint16_t{0};
+      out_.parameters[parameter_] = {s, 0.0F};
+    else if (line.ds > 0.0F)
+      out_.quantised[parameter_] = static_cast<std::uint32_t>(std::nearbyint((s - line.s0) / line.ds));
     ++parameter_;
   }
 
@@ -232,42 +231,44 @@ class PatchFiller {
   const std::uint32_t* source_;
   VertexRuns& out_;
   std::array<std::int32_t, 3> corner_{};
-  std::uint32_t full_ = 0, parameter_ = 0;
+  std::size_t full_ = 0, full_stride_ = 0, parameter_ = 0;
 };
 
 // x, y, z of every slot, padding included.
 void fillBySlot(std::span<const Vec3> positions, const PatchSet& set, TaskPool& pool, VertexRuns& out) {
-  for (std::vector<float>& axis : out.full) axis.resize(set.vertex_source.size() + kRunAlignment);
+  const auto stride = static_cast<std::uint32_t>(set.vertex_source.size());
+  out.full.resize(std::size_t{3} * stride + kRunAlignment);
   forPatches(set.patches.size(), pool, [&](std::size_t p) {
     const std::uint32_t begin = set.patches[p].first_vertex;
+    out.patches[p].first_full = begin;
+    out.patches[p].full_stride = stride;
     const std::uint32_t end = begin + alignedCount(set.patches[p].vertex_count);
     for (std::uint32_t slot = begin; slot < end; ++slot)
-      for (std::size_t k = 0; k < 3; ++k) out.full[k][slot] = positions[set.vertex_source[slot]][static_cast<int>(k)];
+      for (std::size_t k = 0; k < 3; ++k)
+        out.full[slot + k * stride] = positions[set.vertex_source[slot]][static_cast<int>(k)];
   });
 }
 
 // Lays the patches' runs end to end. Returns whether all vertices are stored in full.
-bool joinRuns(const std::vector<std::vector<VertexRun>>& runs, const PatchSet& set, VertexRuns& out) {
-  std::size_t full = 0, parameters = 0;
+bool joinRuns(const std::vector<std::vector<VertexRun>>& runs, VertexRuns& out) {
+  std::uint32_t full = 0, parameters = 0;
   out.patches.resize(runs.size());
   for (std::size_t p = 0; p < runs.size(); ++p) {
-    out.patches[p] = {static_cast<std::uint32_t>(out.runs.size()), static_cast<std::uint32_t>(runs[p].size()),
-                      static_cast<std::uint32_t>(full), static_cast<std::uint32_t>(parameters)};
+    PatchRuns& at = out.patches[p];
+    at.first_run = static_cast<std::uint32_t>(out.runs.size());
+    at.run_count = static_cast<std::uint32_t>(runs[p].size());
+    at.first_full = full;
+    at.first_parameter = parameters;
+    for (const VertexRun& run : runs[p]) (run.kind == RunKind::kFull ? at.full_stride : parameters) += run.vertex_count;
+    full += 3 * at.full_stride;
     out.runs.insert(out.runs.end(), runs[p].begin(), runs[p].end());
-    for (const VertexRun& run : runs[p]) (run.kind == RunKind::kFull ? full : parameters) += run.vertex_count;
   }
-  if (parameters == 0) {
-    for (std::size_t p = 0; p < runs.size(); ++p) out.patches[p].first_full = set.patches[p].first_vertex;
-    return true;
-  }
-  for (std::vector<float>& axis : out.full) axis.resize(full + kRunAlignment);
-  const std::size_t per_vertex = out.lines.empty() ? 2 : 1;
-  for (std::size_t k = 0; k < per_vertex; ++k) {
-    if (out.form == ParameterForm::k16Bit)
-      out.quantised[k].resize(parameters + kRunAlignment);
-    else
-      out.parameters[k].resize(parameters + kRunAlignment);
-  }
+  if (parameters == 0) return true;
+  out.full.resize(std::size_t{full} + kRunAlignment);
+  if (out.form == ParameterForm::k16Bit)
+    out.quantised.resize(std::size_t{parameters} + kRunAlignment);
+  else
+    out.parameters.resize(std::size_t{parameters} + kRunAlignment);
   return false;
 }
 
@@ -280,16 +281,13 @@ std::uint64_t bytesOf(const std::vector<T>& v) {
 
 std::uint64_t VertexRuns::bytes() const {
   std::uint64_t sum = bytesOf(patches) + bytesOf(runs) + bytesOf(lines);
-  for (const auto& v : full) sum += bytesOf(v);
-  for (const auto& v : quantised) sum += bytesOf(v);
-  for (const auto& v : parameters) sum += bytesOf(v);
-  return sum;
+  return sum + bytesOf(full) + bytesOf(quantised) + bytesOf(parameters);
 }
 
 VertexRuns ungroupedRuns(const mesh::Mesh& mesh, const PatchSet& patches, TaskPool& pool) {
   VertexRuns out;
   for (const Patch& patch : patches.patches) {
-    out.patches.push_back({static_cast<std::uint32_t>(out.runs.size()), 1, patch.first_vertex, 0});
+    out.patches.push_back({.first_run = static_cast<std::uint32_t>(out.runs.size()), .run_count = 1});
     out.runs.push_back({.vertex_count = static_cast<std::uint16_t>(patch.vertex_count),
                         .triangle_count = static_cast<std::uint16_t>(patch.triangle_count),
                         .corner_lo = patch.bounds.lo,
@@ -308,7 +306,7 @@ VertexRuns buildVertexRuns(const PlacedVertices& placed, std::uint32_t min_plane
   std::vector<std::vector<VertexRun>> runs(patches.patches.size());
   forPatches(runs.size(), pool,
              [&](std::size_t p) { runs[p] = PatchSorter(placed, min_plane_run, patches).sort(patches.patches[p]); });
-  if (joinRuns(runs, patches, out))
+  if (joinRuns(runs, out))
     fillBySlot(placed.positions, patches, pool, out);
   else
     forPatches(runs.size(), pool, [&](std::size_t p) {

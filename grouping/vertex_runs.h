@@ -58,11 +58,12 @@ struct RunLine {
   float ds = 0.0F;
 };
 
-/// Where the vertices of one patch begin in the arrays of VertexRuns. Runs follow each other in all of them.
+/// Where the vertices of one patch are in the arrays of VertexRuns. Runs follow each other in all of them.
 struct PatchRuns {
   std::uint32_t first_run = 0;
   std::uint32_t run_count = 0;
-  std::uint32_t first_full = 0;
+  std::uint32_t first_full = 0;  ///< x of the first; y and z are full_stride and 2 full_stride farther
+  std::uint32_t full_stride = 0;
   std::uint32_t first_parameter = 0;
   std::array<std::int32_t, 3> corner{};  ///< of 16-bit coordinates: coordinate = (corner + q) * step
 };
@@ -72,14 +73,16 @@ struct VertexRuns {
   std::vector<PatchRuns> patches;  ///< #patches
   std::vector<VertexRun> runs;     ///< by patch: full ones, planes, lines
   std::vector<RunLine> lines;
-  /// x, y, z of vertices stored in full. When all are, they are indexed as PatchSet::vertex_source, padding included.
-  std::array<std::vector<float>, 3> full;
-  std::array<std::vector<std::uint16_t>, 2> quantised;  ///< form k16Bit: s, t
-  std::array<std::vector<float>, 2> parameters;         ///< form kFloat: s, t
+  /// Vertices stored in full: of each patch all x, all y, all z, so that a patch is one stretch of memory; or, where
+  /// nothing is grouped, those of the whole mesh, indexed as PatchSet::vertex_source, padding included.
+  std::vector<float> full;
+  /// Form k16Bit: s in the lower half, t in the upper one, so that a patch is one stream of memory; lines have t = 0.
+  std::vector<std::uint32_t> quantised;
+  std::vector<Vec2> parameters;  ///< form kFloat: (s, t)
   ParameterForm form = ParameterForm::k16Bit;
   float step = 1.0F;  ///< of 16-bit coordinates on planes; a power of two
 
-  bool isFullBySlot() const { return quantised[0].empty() && parameters[0].empty(); }
+  bool isFullBySlot() const { return quantised.empty() && parameters.empty(); }
   std::uint64_t bytes() const;
 };
 

@@ -22,6 +22,8 @@ constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 constexpr double kLeastTurnCos = 0.2;
 // Triangles at a larger angle than 60 degrees form a sharp edge.
 constexpr double kSharpCos = 0.5;
+// Least weight of a held edge, in means of the squared lengths of edges.
+constexpr double kLeastEdge2 = 2.0;
 // When the queue is empty, edges refused earlier may have become possible. Another round is made as long as the last
 // one took away this share of the triangles.
 constexpr double kWorthwhileRound = 1e-3;
@@ -154,6 +156,7 @@ class Simplifier {
       attributes_.emplace(wedges, source_.triangles, at,
                           AttributeWeights{options.normal_weight, options.texcoord_weight, options.color_weight});
     }
+    measureTriangles();
     addFaceQuadrics();
     addEdgeQuadrics();
   }
@@ -189,7 +192,25 @@ class Simplifier {
     return glm::cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]));
   }
 
-  // [GH97] §5. Deviation: weighted by area, because unweighted slivers outvote the large triangles beside them.
+  // Means over the triangles, for the weights below.
+  void measureTriangles() {
+    double area = 0.0, edge2 = 0.0;
+    for (std::uint32_t f = 0; f < topology_.triangleCount(); ++f) {
+      if (!topology_.isLive(f)) continue;
+      area += 0.5 * glm::length(normalOf(f));
+      const Triangle& t = topology_.triangle(f);
+      for (int k = 0; k < 3; ++k) {
+        const DVec3 edge = at(t[(k + 1) % 3]) - at(t[k]);
+        edge2 += glm::dot(edge, edge) / 3.0;
+      }
+    }
+    const double count = std::max<double>(1.0, static_cast<double>(triangleCount()));
+    mean_area_ = area / count;
+    mean_edge2_ = edge2 / count;
+  }
+
+  // [GH97] §5. Deviation: weighted by the geometric mean of area and mean area. Unweighted slivers outvote the large
+  // triangles beside them; weighted by area, small parts that stick out (claws, ears) go for the sake of large ones.
   void addFaceQuadrics() {
     for (std::uint32_t f = 0; f < topology_.triangleCount(); ++f) {
       if (!topology_.isLive(f)) continue;
@@ -198,7 +219,7 @@ class Simplifier {
       if (!(length > 0.0)) continue;
       const DVec3 n = normal / length;
       const Triangle& t = topology_.triangle(f);
-      const Quadric q = Quadric::ofPlane(n, -glm::dot(n, at(t[0])), 0.5 * length);
+      const Quadric q = Quadric::ofPlane(n, -glm::dot(n, at(t[0])), std::sqrt(0.5 * length * mean_area_));
       for (const std::uint32_t p : t) points_[p].quadric += q;
     }
   }
@@ -237,14 +258,17 @@ class Simplifier {
   }
 
   // [GH97] §6: a plane through the edge, upright on the triangle. Meant for borders; here also for edges of three or
-  // more triangles, seams and, lightly, sharp edges, so that those curves stay where they are.
+  // more triangles, seams and, lightly, sharp edges, so that those curves stay where they are. Deviation: the squared
+  // length counts as kLeastEdge2 means at least, or nothing would keep a thin strip at a border from being drawn in:
+  // only the edge at its tip lies across.
   void holdEdge(std::uint32_t p, std::uint32_t q, std::uint32_t triangle, double weight) {
     const DVec3 edge = at(q) - at(p);
     const DVec3 upright = glm::cross(edge, normalOf(triangle));
     const double length = glm::length(upright);
     if (!(length > 0.0)) return;
     const DVec3 m = upright / length;
-    const Quadric plane = Quadric::ofPlane(m, -glm::dot(m, at(p)), weight * glm::dot(edge, edge));
+    const Quadric plane =
+        Quadric::ofPlane(m, -glm::dot(m, at(p)), weight * std::max(glm::dot(edge, edge), kLeastEdge2 * mean_edge2_));
     points_[p].quadric += plane;
     points_[q].quadric += plane;
   }
@@ -365,6 +389,8 @@ class Simplifier {
   CollapseMesh topology_;
   std::vector<Point> points_;
   std::vector<std::uint32_t> version_;  // per point, grows when it moves or goes: older candidates with it are void
+  double mean_area_ = 0.0;              // of a triangle
+  double mean_edge2_ = 0.0;             // of squared edge lengths
   std::optional<AttributeQuadrics> attributes_;
   CandidateQueue queue_;
 };

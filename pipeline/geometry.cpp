@@ -88,8 +88,7 @@ class PatchDrawer {
   bool needsCodes(std::size_t run) const { return (worker_.run_codes[run].may & kClipBits) != 0; }
 
   void transformWhole() {
-    transformPatch(mesh_.vertices, at_, view_.clip_from_object, worker_.clip);
-    projectVertices(worker_.clip, 0, patch_.vertex_count, viewport_, worker_.projected);
+    transformPatch(mesh_.vertices, at_, view_.clip_from_object, viewport_, worker_.projected);
     for (const grouping::VertexRun& run : runs()) countTransformed(run, run.vertex_count);
   }
 
@@ -119,7 +118,6 @@ class PatchDrawer {
   }
 
   void transformKept() {
-    if (!any_rejected_) return transformWhole();
     RunStart start(at_);
     for (std::size_t r = 0; r < at_.run_count; ++r) {
       const grouping::VertexRun& run = runs()[r];
@@ -249,7 +247,7 @@ class PatchDrawer {
     std::array<raster::ScreenCorner, 9> screen;
     for (int i = 0; i < polygon.count; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      const ProjectedVertex p = projectVertex(polygon.corners[k], viewport_);
+      const raster::ScreenVertex p = projectVertex(polygon.corners[k], viewport_);
       screen[k] = {p.x_fx, p.y_fx, p.depth};
     }
 
@@ -301,8 +299,7 @@ class PatchDrawer {
 
   void setUp(const raster::PatchTriangles& part) {
     if (part.count == 0) return;
-    const ProjectedVertices& p = worker_.projected;
-    raster::setupTriangles({p.x_fx, p.y_fx, p.depth, p.inv_w}, part, worker_.binner, counts_);
+    raster::setupTriangles(worker_.projected.data(), part, worker_.binner, counts_);
   }
 
   static constexpr std::uint32_t kRebuiltAtOnce = 16;

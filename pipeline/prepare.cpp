@@ -79,7 +79,7 @@ void gatherAttributes(const mesh::Mesh& mesh, const grouping::PatchSet& set, std
     const std::uint32_t v = set.vertex_source[slot];
     if (!out.position[0].empty())
       for (int k = 0; k < 3; ++k) out.position[static_cast<std::size_t>(k)][slot] = mesh.positions[v][k];
-    if (!mesh.normals.empty()) out.normal[slot] = raster::packNormal(mesh.normals[v]);
+    if (!mesh.normals.empty()) out.normal[slot] = raster::vertexNormal(mesh.normals[v]);
     if (!mesh.texcoords.empty())
       for (int k = 0; k < 2; ++k) out.texcoord[static_cast<std::size_t>(k)][slot] = mesh.texcoords[v][k];
     if (!mesh.colors.empty()) {
@@ -184,7 +184,8 @@ std::uint64_t PreparedMesh::bytes() const {
 
 const float* PreparedMesh::shadingPosition(std::size_t axis) const {
   if (!position[axis].empty()) return position[axis].data();
-  return vertices.isFullBySlot() ? vertices.full[axis].data() : nullptr;
+  if (!vertices.isFullBySlot() || patches.empty()) return nullptr;
+  return vertices.full.data() + axis * vertices.patches[0].full_stride;
 }
 
 PreparedScene prepareScene(scenes::Scene scene, TaskPool& pool, const GroupingOptions& grouping) {

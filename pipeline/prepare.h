@@ -48,7 +48,7 @@ struct PreparedMesh {
   /// x, y, z by slot for shading, where it needs them and `vertices` does not have them so: solid textures, flat
   /// normals.
   std::array<std::vector<float>, 3> position;
-  std::vector<std::uint32_t> normal;                ///< raster::packNormal(); empty = flat
+  std::vector<raster::VertexNormal> normal;         ///< object space; empty = flat
   std::array<std::vector<float>, 2> texcoord;       ///< empty = none
   std::array<std::vector<std::uint32_t>, 2> color;  ///< raster::packColor(); empty = none
   Box3 bounds;

@@ -43,10 +43,8 @@ Mat3 normalMatrix(const DMat4& world_from_object) {
   return Mat3(largest > 0.0 ? cofactor / largest : DMat3(1.0));
 }
 
-const std::uint32_t* dataOrNull(const std::vector<std::uint32_t>& v) {
-  return v.empty() ? nullptr : v.data();
-}
-const float* dataOrNull(const std::vector<float>& v) {
+template <typename T>
+const T* dataOrNull(const std::vector<T>& v) {
   return v.empty() ? nullptr : v.data();
 }
 

@@ -49,7 +49,7 @@ Vec4 transformGrouped(const grouping::VertexRuns& runs, const grouping::PatchRun
   return transformVertex(position, m, run.axis);
 }
 
-ProjectedVertex projectVertex(const Vec4& clip, const Viewport& viewport) {
+raster::ScreenVertex projectVertex(const Vec4& clip, const Viewport& viewport) {
   const float inv_w = 1.0F / clip.w;
   const float x_px = (clip.x * inv_w) * viewport.half_width_px + viewport.half_width_px;
   const float y_px = viewport.half_height_px - (clip.y * inv_w) * viewport.half_height_px;

@@ -6,6 +6,7 @@
 
 #include "core/math.h"
 #include "grouping/vertex_runs.h"
+#include "raster/setup.h"
 
 namespace sheaf::pipeline {
 
@@ -49,12 +50,7 @@ struct alignas(64) ClipVertices {
 };
 
 /// Screen coordinates of a patch; meaningless where w <= 0.
-struct alignas(64) ProjectedVertices {
-  std::int32_t x_fx[kVertexSlots];
-  std::int32_t y_fx[kVertexSlots];
-  float depth[kVertexSlots];
-  float inv_w[kVertexSlots];
-};
+using ProjectedVertices = std::array<raster::ScreenVertex, kVertexSlots>;
 
 struct OutcodeSummary {
   std::int32_t all;  ///< AND over the vertices
@@ -65,7 +61,7 @@ struct OutcodeSummary {
 struct RunStart {
   std::uint32_t vertex = 0;     ///< local number of its first vertex
   std::uint32_t full = 0;       ///< into VertexRuns::full
-  std::uint32_t parameter = 0;  ///< into VertexRuns::quantised or parameters
+  std::uint32_t parameter = 0;  ///< s, into VertexRuns::quantised or parameters
 
   explicit RunStart(const grouping::PatchRuns& patch) : full(patch.first_full), parameter(patch.first_parameter) {}
   void skip(const grouping::VertexRun& run) {
@@ -74,11 +70,12 @@ struct RunStart {
   }
 };
 
-/// All vertices of a patch: those in full by the matrix, others from their plane or line ([PG] eqs. 1, 2).
+/// All vertices of a patch straight to the screen: those in full by the matrix, others from their plane or line ([PG]
+/// eqs. 1, 2). For patches that need no clipping: clip coordinates do not leave the registers.
 void transformPatch(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const Mat4& clip_from_object,
-                    ClipVertices& out);
+                    const Viewport& viewport, ProjectedVertices& out);
 
-/// Vertices [begin, end) of one run, counted from its first; nothing else of `out` is written.
+/// Vertices [begin, end) of one run, counted from its first, to clip space; nothing else of `out` is written.
 void transformRun(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const grouping::VertexRun& run,
                   const RunStart& start, std::uint32_t begin, std::uint32_t end, const Mat4& clip_from_object,
                   ClipVertices& out);
@@ -99,11 +96,7 @@ struct StoredParameters {
 };
 Vec4 transformGrouped(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch,
                       const grouping::VertexRun& run, const StoredParameters& parameters, const Mat4& clip_from_object);
-struct ProjectedVertex {
-  std::int32_t x_fx, y_fx;
-  float depth, inv_w;
-};
-ProjectedVertex projectVertex(const Vec4& clip, const Viewport& viewport);
+raster::ScreenVertex projectVertex(const Vec4& clip, const Viewport& viewport);
 std::int32_t outcodeVertex(const Vec4& clip, const Viewport& viewport);
 
 }  // namespace sheaf::pipeline

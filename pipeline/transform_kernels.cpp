@@ -19,61 +19,77 @@ const hn::RebindToSigned<decltype(df)> di;
 using VF = hn::Vec<decltype(df)>;
 using VI = hn::Vec<decltype(di)>;
 
-const hn::Rebind<std::uint16_t, decltype(df)> du16;
-
-// Where transformed vertices go. Whole vectors: also beyond the end of a run, where the next one overwrites them.
-struct WholeVectors {
+// Where a vector of transformed vertices goes. ToScreen stores whole vectors: what is beyond the end of a run is
+// overwritten by the next one.
+struct ToClipSpace {
   ClipVertices& out;
-  void store(VF v, float* row, std::uint32_t at, std::uint32_t /*end*/) const { hn::StoreU(v, df, row + at); }
+  void store(VF x, VF y, VF z, VF w, std::uint32_t at, std::uint32_t end) const {
+    const auto valid = hn::FirstN(df, std::min<std::size_t>(hn::Lanes(df), end - at));
+    hn::BlendedStore(x, valid, df, out.x + at);
+    hn::BlendedStore(y, valid, df, out.y + at);
+    hn::BlendedStore(z, valid, df, out.z + at);
+    hn::BlendedStore(w, valid, df, out.w + at);
+  }
 };
-struct UpToEnd {
-  ClipVertices& out;
-  void store(VF v, float* row, std::uint32_t at, std::uint32_t end) const {
-    hn::BlendedStore(v, hn::FirstN(df, std::min<std::size_t>(hn::Lanes(df), end - at)), df, row + at);
+struct ToScreen {
+  VF half_width;
+  VF half_height;
+  ProjectedVertices& out;
+
+  ToScreen(const Viewport& viewport, ProjectedVertices& to)
+      : half_width(hn::Set(df, viewport.half_width_px)), half_height(hn::Set(df, viewport.half_height_px)), out(to) {}
+
+  void store(VF x, VF y, VF z, VF w, std::uint32_t at, std::uint32_t /*end*/) const {
+    const VF inv_w = hn::Div(hn::Set(df, 1.0F), w);
+    const VF subpixels = hn::Set(df, static_cast<float>(raster::kSubpixels));
+    const VF x_px = hn::Add(hn::Mul(hn::Mul(x, inv_w), half_width), half_width);
+    const VF y_px = hn::Sub(half_height, hn::Mul(hn::Mul(y, inv_w), half_height));
+    const VF x_fx = hn::BitCast(df, hn::NearestInt(hn::Mul(x_px, subpixels)));
+    const VF y_fx = hn::BitCast(df, hn::NearestInt(hn::Mul(y_px, subpixels)));
+    // Words as they are in memory; only their bits matter.
+    hn::StoreInterleaved4(x_fx, y_fx, hn::Mul(z, inv_w), inv_w, df, reinterpret_cast<float*>(&out[at]));
   }
 };
 
 // ((m3 + a x_a) + b x_b) + c x_c with (a, b, c) = (axis, the two others).
 template <class Target>
-HWY_INLINE void TransformFull(const grouping::VertexRuns& runs, std::size_t axis, std::uint32_t first, std::uint32_t to,
-                              std::uint32_t end, const Mat4& m, const Target& target) {
+HWY_INLINE void TransformFull(const float* x, std::size_t stride, std::size_t axis, std::uint32_t to, std::uint32_t end,
+                              const Mat4& m, const Target& target) {
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(df));
   const auto [second, third] = grouping::axesBeside(axis);
-  const float* const xa = runs.full[axis].data() + first;
-  const float* const xb = runs.full[second].data() + first;
-  const float* const xc = runs.full[third].data() + first;
+  const float* const xa = x + axis * stride;
+  const float* const xb = x + second * stride;
+  const float* const xc = x + third * stride;
   const Vec4 ma = m[static_cast<int>(axis)], mb = m[static_cast<int>(second)], mc = m[static_cast<int>(third)];
-  float* const rows[4] = {target.out.x, target.out.y, target.out.z, target.out.w};
   for (std::uint32_t v = 0; to + v < end; v += lanes) {
     const VF a = hn::LoadU(df, xa + v);
     const VF b = hn::LoadU(df, xb + v);
     const VF c = hn::LoadU(df, xc + v);
-    for (int row = 0; row < 4; ++row) {
-      VF sum = hn::Add(hn::Set(df, m[3][row]), hn::Mul(hn::Set(df, ma[row]), a));
-      sum = hn::Add(sum, hn::Mul(hn::Set(df, mb[row]), b));
-      sum = hn::Add(sum, hn::Mul(hn::Set(df, mc[row]), c));
-      target.store(sum, rows[row], to + v, end);
-    }
+    const auto row = [&](int i) HWY_ATTR {
+      const VF sum = hn::Add(hn::Set(df, m[3][i]), hn::Mul(hn::Set(df, ma[i]), a));
+      return hn::Add(hn::Add(sum, hn::Mul(hn::Set(df, mb[i]), b)), hn::Mul(hn::Set(df, mc[i]), c));
+    };
+    target.store(row(0), row(1), row(2), row(3), to + v, end);
   }
 }
 
 // Parameters as floats: stored so, or whole numbers of grid steps.
 struct FloatParameters {
-  const float* s;
-  const float* t;
-  VF loadS(std::uint32_t v) const { return hn::LoadU(df, s + v); }
-  VF loadT(std::uint32_t v) const { return hn::LoadU(df, t + v); }
+  const Vec2* st;
+  void load(std::uint32_t v, VF& s, VF& t) const { hn::LoadInterleaved2(df, &st[v].x, s, t); }
 };
 struct GridParameters {
-  const std::uint16_t* s;
-  const std::uint16_t* t;
+  const std::uint32_t* st;
   std::int32_t corner_s;
   std::int32_t corner_t;
-  static VF load(const std::uint16_t* q, std::int32_t corner) {
-    return hn::ConvertTo(df, hn::Add(hn::PromoteTo(di, hn::LoadU(du16, q)), hn::Set(di, corner)));
+  void load(std::uint32_t v, VF& s, VF& t) const {
+    const hn::RebindToUnsigned<decltype(df)> du;
+    const auto both = hn::LoadU(du, st + v);
+    const VI q_s = hn::BitCast(di, hn::And(both, hn::Set(du, 0xFFFFU)));
+    const VI q_t = hn::BitCast(di, hn::ShiftRight<16>(both));
+    s = hn::ConvertTo(df, hn::Add(q_s, hn::Set(di, corner_s)));
+    t = hn::ConvertTo(df, hn::Add(q_t, hn::Set(di, corner_t)));
   }
-  VF loadS(std::uint32_t v) const { return load(s + v, corner_s); }
-  VF loadT(std::uint32_t v) const { return load(t + v, corner_t); }
 };
 
 // [PG] eq. 2: base + s S + t T.
@@ -81,27 +97,28 @@ template <class Parameters, class Target>
 HWY_INLINE void TransformPlane(const Parameters& parameters, const Vec4& base, const Vec4& along_s, const Vec4& along_t,
                                std::uint32_t to, std::uint32_t end, const Target& target) {
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(df));
-  float* const rows[4] = {target.out.x, target.out.y, target.out.z, target.out.w};
   for (std::uint32_t v = 0; to + v < end; v += lanes) {
-    const VF s = parameters.loadS(v);
-    const VF t = parameters.loadT(v);
-    for (int row = 0; row < 4; ++row) {
-      const VF sum = hn::Add(hn::Set(df, base[row]), hn::Mul(hn::Set(df, along_s[row]), s));
-      target.store(hn::Add(sum, hn::Mul(hn::Set(df, along_t[row]), t)), rows[row], to + v, end);
-    }
+    VF s, t;
+    parameters.load(v, s, t);
+    const auto row = [&](int i) HWY_ATTR {
+      const VF sum = hn::Add(hn::Set(df, base[i]), hn::Mul(hn::Set(df, along_s[i]), s));
+      return hn::Add(sum, hn::Mul(hn::Set(df, along_t[i]), t));
+    };
+    target.store(row(0), row(1), row(2), row(3), to + v, end);
   }
 }
 
-// [PG] eq. 1: base + s L.
-template <class LoadS, class Target>
-HWY_INLINE void TransformLine(const LoadS& load_s, const Vec4& base, const Vec4& along, std::uint32_t to,
-                              std::uint32_t end, const Target& target) {
+// [PG] eq. 1: base + s L, with s = s0 + q ds for the stored q.
+template <class Parameters, class Target>
+HWY_INLINE void TransformLine(const Parameters& parameters, float s0, float ds, const Vec4& base, const Vec4& along,
+                              std::uint32_t to, std::uint32_t end, const Target& target) {
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(df));
-  float* const rows[4] = {target.out.x, target.out.y, target.out.z, target.out.w};
   for (std::uint32_t v = 0; to + v < end; v += lanes) {
-    const VF s = load_s(v);
-    for (int row = 0; row < 4; ++row)
-      target.store(hn::Add(hn::Set(df, base[row]), hn::Mul(hn::Set(df, along[row]), s)), rows[row], to + v, end);
+    VF s, unused;
+    parameters.load(v, s, unused);
+    s = hn::Add(hn::Set(df, s0), hn::Mul(s, hn::Set(df, ds)));
+    const auto row = [&](int i) HWY_ATTR { return hn::Add(hn::Set(df, base[i]), hn::Mul(hn::Set(df, along[i]), s)); };
+    target.store(row(0), row(1), row(2), row(3), to + v, end);
   }
 }
 
@@ -113,12 +130,11 @@ HWY_INLINE void TransformPlaneRun(const grouping::VertexRuns& runs, const groupi
   const Vec4 base = m[3] + m[run.axis] * run.plane;
   const Vec4 s = m[static_cast<int>(i)], t = m[static_cast<int>(j)];
   if (runs.form == grouping::ParameterForm::kFloat) {
-    const FloatParameters parameters{runs.parameters[0].data() + first, runs.parameters[1].data() + first};
+    const FloatParameters parameters{runs.parameters.data() + first};
     TransformPlane(parameters, base, s, t, to, end, target);
   } else {
     // Scaling by a power of two is exact: these are the products of the whole coordinates.
-    const GridParameters parameters{runs.quantised[0].data() + first, runs.quantised[1].data() + first, patch.corner[i],
-                                    patch.corner[j]};
+    const GridParameters parameters{runs.quantised.data() + first, patch.corner[i], patch.corner[j]};
     TransformPlane(parameters, base, s * runs.step, t * runs.step, to, end, target);
   }
 }
@@ -129,17 +145,10 @@ HWY_INLINE void TransformLineRun(const grouping::VertexRuns& runs, const groupin
   const grouping::RunLine& line = runs.lines[run.line];
   const Vec4 base = ((m[3] + m[0] * line.base.x) + m[1] * line.base.y) + m[2] * line.base.z;
   const Vec4 along = (m[0] * line.direction.x + m[1] * line.direction.y) + m[2] * line.direction.z;
-  if (runs.form == grouping::ParameterForm::kFloat) {
-    const float* const s = runs.parameters[0].data() + first;
-    TransformLine([&](std::uint32_t v) HWY_ATTR { return hn::LoadU(df, s + v); }, base, along, to, end, target);
-  } else {
-    const std::uint16_t* const q = runs.quantised[0].data() + first;
-    const auto load_s = [&](std::uint32_t v) HWY_ATTR {
-      const VF steps = hn::ConvertTo(df, hn::PromoteTo(di, hn::LoadU(du16, q + v)));
-      return hn::Add(hn::Set(df, line.s0), hn::Mul(steps, hn::Set(df, line.ds)));
-    };
-    TransformLine(load_s, base, along, to, end, target);
-  }
+  if (runs.form == grouping::ParameterForm::kFloat)
+    TransformLine(FloatParameters{runs.parameters.data() + first}, 0.0F, 1.0F, base, along, to, end, target);
+  else
+    TransformLine(GridParameters{runs.quantised.data() + first, 0, 0}, line.s0, line.ds, base, along, to, end, target);
 }
 
 // Vertices [begin, end) of a run.
@@ -150,7 +159,7 @@ HWY_INLINE void TransformAnyRun(const grouping::VertexRuns& runs, const grouping
   const std::uint32_t to = start.vertex + begin;
   const std::uint32_t to_end = start.vertex + end;
   if (run.kind == grouping::RunKind::kFull)
-    TransformFull(runs, run.axis, start.full + begin, to, to_end, m, target);
+    TransformFull(runs.full.data() + start.full + begin, patch.full_stride, run.axis, to, to_end, m, target);
   else if (run.kind == grouping::RunKind::kPlane)
     TransformPlaneRun(runs, patch, run, start.parameter + begin, to, to_end, m, target);
   else
@@ -158,37 +167,27 @@ HWY_INLINE void TransformAnyRun(const grouping::VertexRuns& runs, const grouping
 }
 
 void TransformPatch(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const Mat4& m,
-                    ClipVertices& out) {
+                    const Viewport& viewport, ProjectedVertices& out) {
+  const ToScreen target(viewport, out);
   RunStart start(patch);
   for (std::uint32_t r = 0; r < patch.run_count; ++r) {
     const grouping::VertexRun& run = runs.runs[patch.first_run + r];
-    TransformAnyRun(runs, patch, run, start, 0, run.vertex_count, m, WholeVectors{out});
+    TransformAnyRun(runs, patch, run, start, 0, run.vertex_count, m, target);
     start.skip(run);
   }
 }
 
 void TransformRun(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const grouping::VertexRun& run,
                   const RunStart& start, std::uint32_t begin, std::uint32_t end, const Mat4& m, ClipVertices& out) {
-  TransformAnyRun(runs, patch, run, start, begin, end, m, UpToEnd{out});
+  TransformAnyRun(runs, patch, run, start, begin, end, m, ToClipSpace{out});
 }
 
 void ProjectVertices(const ClipVertices& vertices, std::uint32_t begin, std::uint32_t end, const Viewport& viewport,
                      ProjectedVertices& out) {
-  const auto lanes = static_cast<std::uint32_t>(hn::Lanes(df));
-  const VF half_width = hn::Set(df, viewport.half_width_px);
-  const VF half_height = hn::Set(df, viewport.half_height_px);
-  const VF subpixels = hn::Set(df, static_cast<float>(raster::kSubpixels));
-  for (std::uint32_t v = begin; v < end; v += lanes) {
-    const VF inv_w = hn::Div(hn::Set(df, 1.0F), hn::LoadU(df, vertices.w + v));
-    const VF ndc_x = hn::Mul(hn::LoadU(df, vertices.x + v), inv_w);
-    const VF ndc_y = hn::Mul(hn::LoadU(df, vertices.y + v), inv_w);
-    const VF x_px = hn::Add(hn::Mul(ndc_x, half_width), half_width);
-    const VF y_px = hn::Sub(half_height, hn::Mul(ndc_y, half_height));
-    hn::StoreU(hn::NearestInt(hn::Mul(x_px, subpixels)), di, out.x_fx + v);
-    hn::StoreU(hn::NearestInt(hn::Mul(y_px, subpixels)), di, out.y_fx + v);
-    hn::StoreU(hn::Mul(hn::LoadU(df, vertices.z + v), inv_w), df, out.depth + v);
-    hn::StoreU(inv_w, df, out.inv_w + v);
-  }
+  const ToScreen target(viewport, out);
+  for (std::uint32_t v = begin; v < end; v += static_cast<std::uint32_t>(hn::Lanes(df)))
+    target.store(hn::LoadU(df, vertices.x + v), hn::LoadU(df, vertices.y + v), hn::LoadU(df, vertices.z + v),
+                 hn::LoadU(df, vertices.w + v), v, end);
 }
 
 VI BitWhere(hn::Mask<decltype(df)> mask, std::int32_t bit) {
@@ -244,8 +243,8 @@ HWY_EXPORT(ProjectVertices);
 HWY_EXPORT(OutcodeVertices);
 
 void transformPatch(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const Mat4& clip_from_object,
-                    ClipVertices& out) {
-  HWY_DYNAMIC_DISPATCH(TransformPatch)(runs, patch, clip_from_object, out);
+                    const Viewport& viewport, ProjectedVertices& out) {
+  HWY_DYNAMIC_DISPATCH(TransformPatch)(runs, patch, clip_from_object, viewport, out);
 }
 void transformRun(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const grouping::VertexRun& run,
                   const RunStart& start, std::uint32_t begin, std::uint32_t end, const Mat4& clip_from_object,

@@ -1,4 +1,5 @@
-// raster/gather-inl: gathers of 32-bit words that do not wait for what is not theirs. Compiled per SIMD target.
+// raster/gather-inl: gathers of 32-bit words that do not wait for what is not theirs, and the transposition that takes
+// their place where whole records can be loaded. Compiled per SIMD target.
 #if defined(SHEAF_RASTER_GATHER_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHEAF_RASTER_GATHER_INL_H_
 #undef SHEAF_RASTER_GATHER_INL_H_
@@ -62,6 +63,25 @@ HWY_INLINE VI Gather(const std::int32_t* base, VI index) {
 
 HWY_INLINE VF Gather(const float* base, VI index) {
   return hn::GatherIndex(hn::DFromV<VF>(), base, index);
+}
+
+#endif
+
+#if HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE
+
+// Rows of four 32-bit words to columns, in each 128-bit block.
+template <class V>
+HWY_INLINE void TransposeBlocks(V row0, V row1, V row2, V row3, V& a, V& b, V& c, V& d) {
+  const hn::DFromV<V> d32;
+  const hn::Repartition<std::uint64_t, hn::DFromV<V>> d64;
+  const auto lower01 = hn::BitCast(d64, hn::InterleaveLower(d32, row0, row1));
+  const auto upper01 = hn::BitCast(d64, hn::InterleaveUpper(d32, row0, row1));
+  const auto lower23 = hn::BitCast(d64, hn::InterleaveLower(d32, row2, row3));
+  const auto upper23 = hn::BitCast(d64, hn::InterleaveUpper(d32, row2, row3));
+  a = hn::BitCast(d32, hn::InterleaveLower(d64, lower01, lower23));
+  b = hn::BitCast(d32, hn::InterleaveUpper(d64, lower01, lower23));
+  c = hn::BitCast(d32, hn::InterleaveLower(d64, upper01, upper23));
+  d = hn::BitCast(d32, hn::InterleaveUpper(d64, upper01, upper23));
 }
 
 #endif

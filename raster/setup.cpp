@@ -84,11 +84,11 @@ bool binTriangle(const std::int32_t (&x)[3], const std::int32_t (&y)[3], const f
 
 }  // namespace
 
-void setupOne(const ScreenVertices& vertices, const PatchTriangles& triangles, std::uint32_t t, Binner& binner,
+void setupOne(const ScreenVertex* vertices, const PatchTriangles& triangles, std::uint32_t t, Binner& binner,
               SetupCounts& counts) {
   std::uint32_t v[3] = {triangles.corner[0][t], triangles.corner[1][t], triangles.corner[2][t]};
-  std::int32_t x[3] = {vertices.x_fx[v[0]], vertices.x_fx[v[1]], vertices.x_fx[v[2]]};
-  std::int32_t y[3] = {vertices.y_fx[v[0]], vertices.y_fx[v[1]], vertices.y_fx[v[2]]};
+  std::int32_t x[3] = {vertices[v[0]].x_fx, vertices[v[1]].x_fx, vertices[v[2]].x_fx};
+  std::int32_t y[3] = {vertices[v[0]].y_fx, vertices[v[1]].y_fx, vertices[v[2]].y_fx};
   std::int64_t area = doubleArea(x, y);
   const bool back = (area > 0) != (triangles.facing.front_sign > 0);
   if (area == 0 || (back && triangles.facing.cull_back)) {
@@ -107,14 +107,14 @@ void setupOne(const ScreenVertices& vertices, const PatchTriangles& triangles, s
     std::swap(y[1], y[2]);
     area = -area;
   }
-  const float z[3] = {vertices.depth[v[0]], vertices.depth[v[1]], vertices.depth[v[2]]};
+  const float z[3] = {vertices[v[0]].depth, vertices[v[1]].depth, vertices[v[2]].depth};
   const bool binned = binTriangle(x, y, z, area, box, binner, [&] {
     const std::uint32_t index = binner.newShadeTriangle();
     ShadeTriangle& shade = binner.shadeTriangle(index);
     const float inv_area = 1.0F / static_cast<float>(area);
     for (int i = 0; i < 3; ++i) {
       const EdgeAtReference edge = edgeAtReference(x, y, i, box);
-      const float scale = inv_area * vertices.inv_w[v[i]];
+      const float scale = inv_area * vertices[v[i]].inv_w;
       const int corner = turned && i > 0 ? 3 - i : i;  // shading wants the mesh's own order
       shade.u0[corner] = edge.e * scale;
       shade.ux[corner] = edge.a * (scale * kSubpixels);
@@ -131,7 +131,7 @@ void setupOne(const ScreenVertices& vertices, const PatchTriangles& triangles, s
   ++(binned ? counts.binned : counts.no_sample);
 }
 
-void setupTrianglesReference(const ScreenVertices& vertices, const PatchTriangles& triangles, Binner& binner,
+void setupTrianglesReference(const ScreenVertex* vertices, const PatchTriangles& triangles, Binner& binner,
                              SetupCounts& counts) {
   for (std::uint32_t t = 0; t < triangles.count; ++t) setupOne(vertices, triangles, t, binner, counts);
 }

@@ -9,12 +9,11 @@
 
 namespace sheaf::raster {
 
-/// Vertices of one patch, structure of arrays; at most 256.
-struct ScreenVertices {
-  const std::int32_t* x_fx;  ///< 24.8, within the guard band
-  const std::int32_t* y_fx;
-  const float* depth;  ///< reversed, [0, 1]
-  const float* inv_w;  ///< 1 / w, > 0
+/// A projected vertex; 16 bytes, so that set-up reads it with one load.
+struct alignas(16) ScreenVertex {
+  std::int32_t x_fx, y_fx;  ///< 24.8, within the guard band
+  float depth;              ///< reversed, [0, 1]
+  float inv_w;              ///< 1 / w, > 0
 };
 
 /// Which side of a triangle is its front, as the sign of (v1 - v0) x (v2 - v0) with y down; and whether backs are
@@ -42,11 +41,11 @@ struct SetupCounts {
 };
 
 /// Sets up and bins whole triangles, a vector of them at a time.
-void setupTriangles(const ScreenVertices& vertices, const PatchTriangles& triangles, Binner& binner,
-                    SetupCounts& counts);
+/// vertices  of the patch, by local number
+void setupTriangles(const ScreenVertex* vertices, const PatchTriangles& triangles, Binner& binner, SetupCounts& counts);
 
 /// The same, one by one; the plain reference.
-void setupTrianglesReference(const ScreenVertices& vertices, const PatchTriangles& triangles, Binner& binner,
+void setupTrianglesReference(const ScreenVertex* vertices, const PatchTriangles& triangles, Binner& binner,
                              SetupCounts& counts);
 
 /// One corner of a piece of a clipped triangle.

@@ -1,3 +1,6 @@
+#include <cstddef>
+#include <cstring>
+
 #include "raster/setup.h"
 #include "raster/setup_one.h"
 
@@ -27,6 +30,45 @@ unsigned MaskBits(hn::Mask<decltype(di)> mask) {
   hn::StoreMaskBits(di, mask, bits);
   return bits[0] | static_cast<unsigned>(bits[1]) << 8;
 }
+
+#if HWY_TARGET == HWY_SCALAR || HWY_HAVE_SCALABLE
+
+HWY_INLINE void LoadVertices(const ScreenVertex* vertices, const std::uint8_t* index, VI& x, VI& y, VF& depth,
+                             VF& inv_w) {
+  const hn::Rebind<std::uint8_t, decltype(di)> du8;
+  const VI first = hn::ShiftLeft<2>(hn::PromoteTo(di, hn::LoadU(du8, index)));
+  x = Gather(&vertices->x_fx, first);
+  y = Gather(&vertices->x_fx + 1, first);
+  depth = Gather(&vertices->depth, first);
+  inv_w = Gather(&vertices->depth + 1, first);
+}
+
+#else
+
+// The vertices index[0], index[4] and so on, one in each 128-bit block.
+template <class D>
+HWY_INLINE hn::Vec<D> LoadVertexBlocks(D d, const ScreenVertex* vertices, const std::uint8_t* index) {
+  if constexpr (hn::MaxLanes(D()) == 4) {
+    return hn::Load(d, &vertices[*index].x_fx);
+  } else {
+    const hn::Half<D> half;
+    return hn::Combine(d, LoadVertexBlocks(half, vertices, index + hn::MaxLanes(half)),
+                       LoadVertexBlocks(half, vertices, index));
+  }
+}
+
+// A vector of vertices: loads of whole ones and a transposition are twice as fast as gathers of their words.
+HWY_INLINE void LoadVertices(const ScreenVertex* vertices, const std::uint8_t* index, VI& x, VI& y, VF& depth,
+                             VF& inv_w) {
+  VI depth_bits, inv_w_bits;
+  TransposeBlocks(LoadVertexBlocks(di, vertices, index), LoadVertexBlocks(di, vertices, index + 1),
+                  LoadVertexBlocks(di, vertices, index + 2), LoadVertexBlocks(di, vertices, index + 3), x, y,
+                  depth_bits, inv_w_bits);
+  depth = hn::BitCast(df, depth_bits);
+  inv_w = hn::BitCast(df, inv_w_bits);
+}
+
+#endif
 
 struct EdgeLanes {
   VI a, b, e;  // e: at the centre of the reference pixel, unbiased
@@ -76,15 +118,30 @@ HWY_INLINE VI CoverSmall(const EdgeLanes& e0, const EdgeLanes& e1, const EdgeLan
   return mask;
 }
 
-// What goes into memory for each surviving lane.
+// What goes into memory for each surviving lane: quarters of its ShadeTriangle, halves of its BinEntry, and what a
+// LargeTriangle needs besides.
 struct alignas(64) LaneOutput {
-  float u0[3][kMaxLanes], ux[3][kMaxLanes], uy[3][kMaxLanes];
-  float z[kMaxLanes], dzdx[kMaxLanes], dzdy[kMaxLanes], lo[kMaxLanes], hi[kMaxLanes];
-  std::int32_t vertex[3][kMaxLanes];
+  std::uint32_t shade[4][kMaxLanes][4];
+  std::uint32_t entry[2][kMaxLanes][4];
   std::int32_t a[3][kMaxLanes], b[3][kMaxLanes], c[3][kMaxLanes];  // PixelEdge
-  std::int32_t x_min[kMaxLanes], y_min[kMaxLanes], x_max[kMaxLanes], y_max[kMaxLanes];
-  std::int32_t mask[kMaxLanes];
+  std::int32_t x_max[kMaxLanes], y_max[kMaxLanes];
 };
+static_assert(sizeof(ShadeTriangle) == 4 * sizeof(LaneOutput::shade[0][0]));
+static_assert(offsetof(ShadeTriangle, ux) == 12 && offsetof(ShadeTriangle, uy) == 24);
+static_assert(offsetof(ShadeTriangle, ref_x) == 36 && offsetof(ShadeTriangle, vertex) == 40);
+static_assert(offsetof(ShadeTriangle, surface) == 52 && offsetof(ShadeTriangle, back_face) == 60);
+static_assert(sizeof(BinEntry) == 2 * sizeof(LaneOutput::entry[0][0]));
+static_assert(offsetof(BinEntry, mask) == 4 && offsetof(BinEntry, depth) == 8 && offsetof(BinEntry, index) == 28);
+
+// Four words of every lane, lane by lane.
+HWY_INLINE void StoreWords(VI w0, VI w1, VI w2, VI w3, std::uint32_t (&to)[kMaxLanes][4]) {
+  const hn::RebindToUnsigned<decltype(di)> du;
+  hn::StoreInterleaved4(hn::BitCast(du, w0), hn::BitCast(du, w1), hn::BitCast(du, w2), hn::BitCast(du, w3), du, to[0]);
+}
+
+HWY_INLINE VI Bits(VF v) {
+  return hn::BitCast(di, v);
+}
 
 void StorePixelEdge(const EdgeLanes& edge, int i, LaneOutput& out) {
   hn::Store(edge.a, di, out.a[i]);
@@ -92,40 +149,32 @@ void StorePixelEdge(const EdgeLanes& edge, int i, LaneOutput& out) {
   hn::Store(hn::ShiftRight<kSubpixelBits>(hn::Add(edge.e, TopLeftBias(edge))), di, out.c[i]);
 }
 
-void EmitLane(const LaneOutput& out, int lane, bool small, bool turned, bool back, std::uint32_t t,
-              const PatchTriangles& triangles, Binner& binner) {
+HWY_INLINE void EmitLane(const LaneOutput& out, std::size_t lane, bool small, std::uint32_t triangle, Binner& binner) {
   const std::uint32_t index = binner.newShadeTriangle();
   ShadeTriangle& shade = binner.shadeTriangle(index);
-  // Shading wants the mesh's own order of corners.
-  const int from[3] = {0, turned ? 2 : 1, turned ? 1 : 2};
-  for (int i = 0; i < 3; ++i) {
-    shade.u0[i] = out.u0[from[i]][lane];
-    shade.ux[i] = out.ux[from[i]][lane];
-    shade.uy[i] = out.uy[from[i]][lane];
-    shade.vertex[i] = triangles.first_vertex + static_cast<std::uint32_t>(out.vertex[from[i]][lane]);
-  }
-  shade.ref_x = static_cast<std::int16_t>(out.x_min[lane]);
-  shade.ref_y = static_cast<std::int16_t>(out.y_min[lane]);
-  shade.surface = triangles.surface;
-  shade.triangle = triangles.source[t];
-  shade.back_face = back ? 1 : 0;
-  const DepthPlane plane = {out.z[lane], out.dzdx[lane], out.dzdy[lane], out.lo[lane], out.hi[lane]};
+  for (std::size_t quarter = 0; quarter < 4; ++quarter)
+    std::memcpy(reinterpret_cast<char*>(&shade) + 16 * quarter, out.shade[quarter][lane], 16);
+  shade.triangle = triangle;
+  BinEntry entry;
+  for (std::size_t half = 0; half < 2; ++half)
+    std::memcpy(reinterpret_cast<char*>(&entry) + 16 * half, out.entry[half][lane], 16);
+  entry.index = index;
   if (small) {
-    binner.addSmall({shade.ref_x, shade.ref_y, static_cast<std::uint16_t>(out.mask[lane]), 0, plane, index});
-  } else {
-    LargeTriangle large;
-    for (int i = 0; i < 3; ++i) large.edges[i] = {out.a[i][lane], out.b[i][lane], out.c[i][lane]};
-    large.ref_x = shade.ref_x;
-    large.ref_y = shade.ref_y;
-    large.last_x = static_cast<std::int16_t>(out.x_max[lane]);
-    large.last_y = static_cast<std::int16_t>(out.y_max[lane]);
-    large.depth = plane;
-    large.shade = index;
-    binner.addLarge(large);
+    binner.addSmall(entry);
+    return;
   }
+  LargeTriangle large;
+  for (int i = 0; i < 3; ++i) large.edges[i] = {out.a[i][lane], out.b[i][lane], out.c[i][lane]};
+  large.ref_x = entry.x;
+  large.ref_y = entry.y;
+  large.last_x = static_cast<std::int16_t>(out.x_max[lane]);
+  large.last_y = static_cast<std::int16_t>(out.y_max[lane]);
+  large.depth = entry.depth;
+  large.shade = index;
+  binner.addLarge(large);
 }
 
-void SetupTriangles(const ScreenVertices& vertices, const PatchTriangles& triangles, Binner& binner,
+void SetupTriangles(const ScreenVertex* vertices, const PatchTriangles& triangles, Binner& binner,
                     SetupCounts& counts) {
   const hn::Rebind<std::uint8_t, decltype(di)> du8;
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(di));
@@ -141,15 +190,11 @@ void SetupTriangles(const ScreenVertices& vertices, const PatchTriangles& triang
     const unsigned in_range = (1U << std::min(lanes, triangles.count - t)) - 1U;
 
     // Fetch the corners.
-    const VI i0 = hn::PromoteTo(di, hn::LoadU(du8, triangles.corner[0] + t));
-    VI i1 = hn::PromoteTo(di, hn::LoadU(du8, triangles.corner[1] + t));
-    VI i2 = hn::PromoteTo(di, hn::LoadU(du8, triangles.corner[2] + t));
-    const VI x0 = Gather(vertices.x_fx, i0);
-    const VI y0 = Gather(vertices.y_fx, i0);
-    VI x1 = Gather(vertices.x_fx, i1);
-    VI y1 = Gather(vertices.y_fx, i1);
-    VI x2 = Gather(vertices.x_fx, i2);
-    VI y2 = Gather(vertices.y_fx, i2);
+    VI x0, y0, x1, y1, x2, y2;
+    VF z0, z1, z2, inv_w0, inv_w1, inv_w2;
+    LoadVertices(vertices, triangles.corner[0] + t, x0, y0, z0, inv_w0);
+    LoadVertices(vertices, triangles.corner[1] + t, x1, y1, z1, inv_w1);
+    LoadVertices(vertices, triangles.corner[2] + t, x2, y2, z2, inv_w2);
 
     // Bound them, in subpixels and in pixels whose centres may be covered.
     const VI x_lo = hn::Min(hn::Min(x0, x1), x2);
@@ -183,13 +228,17 @@ void SetupTriangles(const ScreenVertices& vertices, const PatchTriangles& triang
     // Turn triangles of negative area round.
     const VI x1_in = x1;
     const VI y1_in = y1;
-    const VI i1_in = i1;
+    const VF z1_in = z1;
+    const VF inv_w1_in = inv_w1;
+    const auto turned = hn::RebindMask(df, negative);
     x1 = hn::IfThenElse(negative, x2, x1);
     y1 = hn::IfThenElse(negative, y2, y1);
-    i1 = hn::IfThenElse(negative, i2, i1);
+    z1 = hn::IfThenElse(turned, z2, z1);
+    inv_w1 = hn::IfThenElse(turned, inv_w2, inv_w1);
     x2 = hn::IfThenElse(negative, x1_in, x2);
     y2 = hn::IfThenElse(negative, y1_in, y2);
-    i2 = hn::IfThenElse(negative, i1_in, i2);
+    z2 = hn::IfThenElse(turned, z1_in, z2);
+    inv_w2 = hn::IfThenElse(turned, inv_w1_in, inv_w2);
 
     // Cover the small ones; drop those that cover nothing.
     const VI cx = hn::Add(hn::ShiftLeft<kSubpixelBits>(x_min), half);
@@ -201,6 +250,7 @@ void SetupTriangles(const ScreenVertices& vertices, const PatchTriangles& triang
     const VI rows = hn::Sub(y_max, y_min);
     const VI small_max = hn::Set(di, kSmallSize - 1);
     const unsigned small = alive & ~MaskBits(hn::Or(hn::Gt(columns, small_max), hn::Gt(rows, small_max)));
+    VI mask = zero;
     if (small != 0) {
       // Pixels of the 4x4 beyond the box lie beyond the target's edge or are not covered.
       VI in_box = hn::Set(di, 0xFFFF);
@@ -210,8 +260,7 @@ void SetupTriangles(const ScreenVertices& vertices, const PatchTriangles& triang
       in_box = hn::IfThenElse(hn::Lt(rows, hn::Set(di, 3)), hn::And(in_box, hn::Set(di, 0x0FFF)), in_box);
       in_box = hn::IfThenElse(hn::Lt(rows, hn::Set(di, 2)), hn::And(in_box, hn::Set(di, 0x00FF)), in_box);
       in_box = hn::IfThenElse(hn::Lt(rows, one), hn::And(in_box, hn::Set(di, 0x000F)), in_box);
-      const VI mask = hn::And(CoverSmall(e0, e1, e2), in_box);
-      hn::Store(mask, di, out.mask);
+      mask = hn::And(CoverSmall(e0, e1, e2), in_box);
       const unsigned empty = small & MaskBits(hn::Eq(mask, zero));
       counts.no_sample += static_cast<unsigned>(__builtin_popcount(empty));
       alive &= ~empty;
@@ -229,37 +278,41 @@ void SetupTriangles(const ScreenVertices& vertices, const PatchTriangles& triang
     const VF f2a = hn::ConvertTo(df, e2.a);
     const VF f1b = hn::ConvertTo(df, e1.b);
     const VF f2b = hn::ConvertTo(df, e2.b);
-    const VF z0 = Gather(vertices.depth, i0);
-    const VF z1 = Gather(vertices.depth, i1);
-    const VF z2 = Gather(vertices.depth, i2);
     const VF d1 = hn::Sub(z1, z0);
     const VF d2 = hn::Sub(z2, z0);
     const VF inv_area_px = hn::Mul(inv_area, subpixels);
-    hn::Store(hn::Add(z0, hn::Mul(hn::Add(hn::Mul(f1e, d1), hn::Mul(f2e, d2)), inv_area)), df, out.z);
-    hn::Store(hn::Mul(hn::Add(hn::Mul(f1a, d1), hn::Mul(f2a, d2)), inv_area_px), df, out.dzdx);
-    hn::Store(hn::Mul(hn::Add(hn::Mul(f1b, d1), hn::Mul(f2b, d2)), inv_area_px), df, out.dzdy);
-    hn::Store(hn::Min(hn::Min(z0, z1), z2), df, out.lo);
-    hn::Store(hn::Max(hn::Max(z0, z1), z2), df, out.hi);
-    const VF s0 = hn::Mul(inv_area, Gather(vertices.inv_w, i0));
-    const VF s1 = hn::Mul(inv_area, Gather(vertices.inv_w, i1));
-    const VF s2 = hn::Mul(inv_area, Gather(vertices.inv_w, i2));
+    const VF z = hn::Add(z0, hn::Mul(hn::Add(hn::Mul(f1e, d1), hn::Mul(f2e, d2)), inv_area));
+    const VF dzdx = hn::Mul(hn::Add(hn::Mul(f1a, d1), hn::Mul(f2a, d2)), inv_area_px);
+    const VF dzdy = hn::Mul(hn::Add(hn::Mul(f1b, d1), hn::Mul(f2b, d2)), inv_area_px);
+    const VI ref = hn::Or(hn::And(x_min, hn::Set(di, 0xFFFF)), hn::ShiftLeft<16>(y_min));
+    StoreWords(ref, mask, Bits(z), Bits(dzdx), out.entry[0]);
+    StoreWords(Bits(dzdy), Bits(hn::Min(hn::Min(z0, z1), z2)), Bits(hn::Max(hn::Max(z0, z1), z2)), zero, out.entry[1]);
+
+    const VF s0 = hn::Mul(inv_area, inv_w0);
+    const VF s1 = hn::Mul(inv_area, inv_w1);
+    const VF s2 = hn::Mul(inv_area, inv_w2);
     const VF s0_px = hn::Mul(s0, subpixels);
     const VF s1_px = hn::Mul(s1, subpixels);
     const VF s2_px = hn::Mul(s2, subpixels);
-    hn::Store(hn::Mul(hn::ConvertTo(df, e0.e), s0), df, out.u0[0]);
-    hn::Store(hn::Mul(f1e, s1), df, out.u0[1]);
-    hn::Store(hn::Mul(f2e, s2), df, out.u0[2]);
-    hn::Store(hn::Mul(hn::ConvertTo(df, e0.a), s0_px), df, out.ux[0]);
-    hn::Store(hn::Mul(f1a, s1_px), df, out.ux[1]);
-    hn::Store(hn::Mul(f2a, s2_px), df, out.ux[2]);
-    hn::Store(hn::Mul(hn::ConvertTo(df, e0.b), s0_px), df, out.uy[0]);
-    hn::Store(hn::Mul(f1b, s1_px), df, out.uy[1]);
-    hn::Store(hn::Mul(f2b, s2_px), df, out.uy[2]);
-    hn::Store(i0, di, out.vertex[0]);
-    hn::Store(i1, di, out.vertex[1]);
-    hn::Store(i2, di, out.vertex[2]);
-    hn::Store(x_min, di, out.x_min);
-    hn::Store(y_min, di, out.y_min);
+    const VF u0_1 = hn::Mul(f1e, s1);
+    const VF u0_2 = hn::Mul(f2e, s2);
+    const VF ux_1 = hn::Mul(f1a, s1_px);
+    const VF ux_2 = hn::Mul(f2a, s2_px);
+    const VF uy_1 = hn::Mul(f1b, s1_px);
+    const VF uy_2 = hn::Mul(f2b, s2_px);
+    // Shading wants the mesh's own order of corners.
+    const VI first_vertex = hn::Set(di, static_cast<std::int32_t>(triangles.first_vertex));
+    const auto vertex = [&](std::size_t corner) HWY_ATTR {
+      return hn::Add(first_vertex, hn::PromoteTo(di, hn::LoadU(du8, triangles.corner[corner] + t)));
+    };
+    const VI back_lanes =
+        hn::IfThenElse(negative, hn::Set(di, front_positive ? 1 : 0), hn::Set(di, front_positive ? 0 : 1));
+    StoreWords(Bits(hn::Mul(hn::ConvertTo(df, e0.e), s0)), Bits(hn::IfThenElse(turned, u0_2, u0_1)),
+               Bits(hn::IfThenElse(turned, u0_1, u0_2)), Bits(hn::Mul(hn::ConvertTo(df, e0.a), s0_px)), out.shade[0]);
+    StoreWords(Bits(hn::IfThenElse(turned, ux_2, ux_1)), Bits(hn::IfThenElse(turned, ux_1, ux_2)),
+               Bits(hn::Mul(hn::ConvertTo(df, e0.b), s0_px)), Bits(hn::IfThenElse(turned, uy_2, uy_1)), out.shade[1]);
+    StoreWords(Bits(hn::IfThenElse(turned, uy_1, uy_2)), ref, vertex(0), vertex(1), out.shade[2]);
+    StoreWords(vertex(2), hn::Set(di, static_cast<std::int32_t>(triangles.surface)), zero, back_lanes, out.shade[3]);
     if ((alive & ~small) != 0) {
       StorePixelEdge(e0, 0, out);
       StorePixelEdge(e1, 1, out);
@@ -269,9 +322,8 @@ void SetupTriangles(const ScreenVertices& vertices, const PatchTriangles& triang
     }
 
     for (unsigned rest = alive; rest != 0; rest &= rest - 1) {
-      const int lane = __builtin_ctz(rest);
-      EmitLane(out, lane, (small >> lane & 1U) != 0, (negative_bits >> lane & 1U) != 0, (back >> lane & 1U) != 0,
-               t + static_cast<std::uint32_t>(lane), triangles, binner);
+      const auto lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
+      EmitLane(out, lane, (small >> lane & 1U) != 0, triangles.source[t + lane], binner);
     }
   }
 }
@@ -282,7 +334,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sheaf::raster {
 HWY_EXPORT(SetupTriangles);
-void setupTriangles(const ScreenVertices& vertices, const PatchTriangles& triangles, Binner& binner,
+void setupTriangles(const ScreenVertex* vertices, const PatchTriangles& triangles, Binner& binner,
                     SetupCounts& counts) {
   HWY_DYNAMIC_DISPATCH(SetupTriangles)(vertices, triangles, binner, counts);
 }

@@ -26,7 +26,7 @@ PixelBox pixelBox(const std::int32_t (&x_fx)[3], const std::int32_t (&y_fx)[3], 
 std::int64_t doubleArea(const std::int32_t (&x_fx)[3], const std::int32_t (&y_fx)[3]);
 
 /// Sets up and bins triangle `t` of the patch.
-void setupOne(const ScreenVertices& vertices, const PatchTriangles& triangles, std::uint32_t t, Binner& binner,
+void setupOne(const ScreenVertex* vertices, const PatchTriangles& triangles, std::uint32_t t, Binner& binner,
               SetupCounts& counts);
 
 }  // namespace sheaf::raster

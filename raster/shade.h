@@ -29,12 +29,18 @@ struct ShadeMaterial {
   ShadeModel model = ShadeModel::kSmooth;
 };
 
+/// A unit vector, padded so that a vector of them is read by one load each and a transposition.
+struct alignas(16) VertexNormal {
+  float x, y, z;
+  float unused;
+};
+
 /// One instance: where its attributes are and how its normals turn. Attribute arrays are indexed by
 /// ShadeTriangle::vertex and readable at every index that a triangle names.
 struct Surface {
   std::array<const float*, 3> position_object{};  ///< x, y, z; null only if nothing reads them:
                                                   ///< no solid texture, and normals that are not the triangle's own
-  const std::uint32_t* normal = nullptr;          ///< packNormal(), object space; null = use the triangle's own
+  const VertexNormal* normal = nullptr;           ///< object space; null = use the triangle's own
   std::array<const float*, 2> texcoord{};         ///< u, v; null = none
   std::array<const std::uint32_t*, 2> color{};    ///< packColor(): rg, ba; null = none
   Mat3 world_from_object_normal{1.0F};            ///< takes normals to world space, any scale (cofactor matrix)
@@ -84,9 +90,8 @@ ShadeCounts shadeTile(const ShadeScene& scene, const TileVisibility& tile, int x
 /// The same for a tile in which nothing is visible.
 ShadeCounts fillTile(const ShadeScene& scene, int x0, int y0, const ColorTarget& target);
 
-/// Octahedral code [CDE14] of a unit vector, 16 bits a coordinate, u in the low half.
-std::uint32_t packNormal(const Vec3& unit);
-Vec3 unpackNormal(std::uint32_t packed);
+/// +Z for a vector that has no direction.
+VertexNormal vertexNormal(const Vec3& direction);
 
 /// Linear colour and straight alpha as 16-bit fractions: {r | g << 16, b | a << 16}; clamped to [0, 1].
 std::array<std::uint32_t, 2> packColor(const Vec4& linear);

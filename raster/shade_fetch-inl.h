@@ -3,7 +3,7 @@
 #include <bit>
 
 #include "raster/shade.h"
-#include "raster/shade_normal-inl.h"
+#include "raster/shade_math-inl.h"
 
 #if defined(SHEAF_RASTER_SHADE_FETCH_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHEAF_RASTER_SHADE_FETCH_INL_H_
@@ -35,15 +35,9 @@ struct BlockFragments {
   // For the same only: how the planes of ShadeTriangle rise along x and y, divided by their sum here.
   alignas(64) float along_x[3][kBlockPixels];
   alignas(64) float along_y[3][kBlockPixels];
-  // Of each vector, at its first pixel: the lanes to shade now, and the one triangle that all show, or kNoTriangle.
+  // Of each vector, at its first pixel: the lanes to shade now, and 1 if all of them show the same triangle.
   std::uint32_t lanes[kBlockPixels];
   std::uint32_t uniform[kBlockPixels];
-};
-
-/// UnpackDirections() of the corners of the triangle that last filled a vector, as most large ones do again.
-struct CornerNormals {
-  std::uint32_t triangle = kNoTriangle;
-  float corner[3][4];  ///< qx, qy, qz, scale
 };
 
 HWY_INLINE std::uint64_t AllLanes() {
@@ -52,62 +46,106 @@ HWY_INLINE std::uint64_t AllLanes() {
 
 #if HWY_TARGET == HWY_SCALAR || HWY_HAVE_SCALABLE
 
-HWY_INLINE void LoadFourWords(const std::uint32_t* words, const std::uint32_t* ids, VU& a, VU& b, VU& c, VU& d) {
+/// The sixteen words of each lane's record, in order.
+HWY_INLINE void LoadRecords(const std::uint32_t* words, const std::uint32_t* ids, VU& w0, VU& w1, VU& w2, VU& w3,
+                            VU& w4, VU& w5, VU& w6, VU& w7, VU& w8, VU& w9, VU& w10, VU& w11, VU& w12, VU& w13, VU& w14,
+                            VU& w15) {
   const VI first = hn::BitCast(DI(), hn::ShiftLeft<4>(hn::Load(DU(), ids)));
-  a = Gather(words, first);
-  b = Gather(words + 1, first);
-  c = Gather(words + 2, first);
-  d = Gather(words + 3, first);
+  VU* const out[kWords] = {&w0, &w1, &w2, &w3, &w4, &w5, &w6, &w7, &w8, &w9, &w10, &w11, &w12, &w13, &w14, &w15};
+  for (int word = 0; word < kWords; ++word) *out[word] = Gather(words + word, first);
+}
+
+HWY_INLINE void LoadNormals(const VertexNormal* normals, const std::int32_t* vertices, VF& x, VF& y, VF& z) {
+  const VI first = hn::ShiftLeft<2>(hn::Load(DI(), vertices));
+  const auto* words = reinterpret_cast<const float*>(normals);
+  x = Gather(words, first);
+  y = Gather(words + 1, first);
+  z = Gather(words + 2, first);
 }
 
 #else
 
-/// Four words at words[16 * ids[0]], four at words[16 * ids[4]], and so on.
-template <class D>
-HWY_INLINE hn::Vec<D> LoadQuads(D d, const std::uint32_t* words, const std::uint32_t* ids) {
-  if constexpr (hn::MaxLanes(D()) == 4) {
-    return hn::Load(d, words + std::size_t{kWords} * ids[0]);
+/// Quarters of the records ids[0], ids[4] and so on: one record to a 128-bit block. Records are read in as few loads as
+/// there can be: pieces of different cache lines that lie at the same place in them are read one after the other.
+HWY_INLINE void LoadQuarters(const std::uint32_t* words, const std::uint32_t* ids, VU& q0, VU& q1, VU& q2, VU& q3) {
+  const DU du;
+  const auto record = [&](std::size_t i) HWY_ATTR { return words + std::size_t{kWords} * ids[4 * i]; };
+  if constexpr (hn::MaxLanes(DU()) == 16) {
+    const VU r0 = hn::Load(du, record(0));
+    const VU r1 = hn::Load(du, record(1));
+    const VU r2 = hn::Load(du, record(2));
+    const VU r3 = hn::Load(du, record(3));
+    const VU r01_even = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(r1), r0);
+    const VU r01_odd = hn::OddEvenBlocks(r1, hn::SwapAdjacentBlocks(r0));
+    const VU r23_even = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(r3), r2);
+    const VU r23_odd = hn::OddEvenBlocks(r3, hn::SwapAdjacentBlocks(r2));
+    q0 = hn::ConcatLowerLower(du, r23_even, r01_even);
+    q1 = hn::ConcatLowerLower(du, r23_odd, r01_odd);
+    q2 = hn::ConcatUpperUpper(du, r23_even, r01_even);
+    q3 = hn::ConcatUpperUpper(du, r23_odd, r01_odd);
+  } else if constexpr (hn::MaxLanes(DU()) == 8) {
+    const VU r0_lower = hn::Load(du, record(0));
+    const VU r0_upper = hn::Load(du, record(0) + 8);
+    const VU r1_lower = hn::Load(du, record(1));
+    const VU r1_upper = hn::Load(du, record(1) + 8);
+    q0 = hn::ConcatLowerLower(du, r1_lower, r0_lower);
+    q1 = hn::ConcatUpperUpper(du, r1_lower, r0_lower);
+    q2 = hn::ConcatLowerLower(du, r1_upper, r0_upper);
+    q3 = hn::ConcatUpperUpper(du, r1_upper, r0_upper);
   } else {
-    const hn::Half<D> half;
-    return hn::Combine(d, LoadQuads(half, words, ids + hn::MaxLanes(half)), LoadQuads(half, words, ids));
+    q0 = hn::Load(du, record(0));
+    q1 = hn::Load(du, record(0) + 4);
+    q2 = hn::Load(du, record(0) + 8);
+    q3 = hn::Load(du, record(0) + 12);
   }
 }
 
-/// Words 0 to 3 of each lane's record. A record is one cache line, so that a quarter of it is loaded whole and
-/// transposed: a quarter as many loads as gathers need, which read one word at a time.
-HWY_INLINE void LoadFourWords(const std::uint32_t* words, const std::uint32_t* ids, VU& a, VU& b, VU& c, VU& d) {
+/// The sixteen words of each lane's record, in order: loads of whole records and a transposition, which are faster than
+/// gathers that read one word at a time.
+HWY_INLINE void LoadRecords(const std::uint32_t* words, const std::uint32_t* ids, VU& w0, VU& w1, VU& w2, VU& w3,
+                            VU& w4, VU& w5, VU& w6, VU& w7, VU& w8, VU& w9, VU& w10, VU& w11, VU& w12, VU& w13, VU& w14,
+                            VU& w15) {
+  VU a0, a1, a2, a3, b0, b1, b2, b3, c0, c1, c2, c3, d0, d1, d2, d3;
+  LoadQuarters(words, ids, a0, b0, c0, d0);
+  LoadQuarters(words, ids + 1, a1, b1, c1, d1);
+  LoadQuarters(words, ids + 2, a2, b2, c2, d2);
+  LoadQuarters(words, ids + 3, a3, b3, c3, d3);
+  TransposeBlocks(a0, a1, a2, a3, w0, w1, w2, w3);
+  TransposeBlocks(b0, b1, b2, b3, w4, w5, w6, w7);
+  TransposeBlocks(c0, c1, c2, c3, w8, w9, w10, w11);
+  TransposeBlocks(d0, d1, d2, d3, w12, w13, w14, w15);
+}
+
+/// The normals of vertices[0], vertices[4] and so on, one in each 128-bit block.
+template <class D>
+HWY_INLINE hn::Vec<D> LoadNormalBlocks(D d, const VertexNormal* normals, const std::int32_t* vertices) {
+  if constexpr (hn::MaxLanes(D()) == 4) {
+    return hn::Load(d, reinterpret_cast<const std::uint32_t*>(normals + vertices[0]));
+  } else {
+    const hn::Half<D> half;
+    return hn::Combine(d, LoadNormalBlocks(half, normals, vertices + hn::MaxLanes(half)),
+                       LoadNormalBlocks(half, normals, vertices));
+  }
+}
+
+HWY_INLINE void LoadNormals(const VertexNormal* normals, const std::int32_t* vertices, VF& x, VF& y, VF& z) {
   const DU du;
-  const hn::Repartition<std::uint64_t, DU> d64;
-  const VU row0 = LoadQuads(du, words, ids);
-  const VU row1 = LoadQuads(du, words, ids + 1);
-  const VU row2 = LoadQuads(du, words, ids + 2);
-  const VU row3 = LoadQuads(du, words, ids + 3);
-  const auto lower01 = hn::BitCast(d64, hn::InterleaveLower(du, row0, row1));
-  const auto upper01 = hn::BitCast(d64, hn::InterleaveUpper(du, row0, row1));
-  const auto lower23 = hn::BitCast(d64, hn::InterleaveLower(du, row2, row3));
-  const auto upper23 = hn::BitCast(d64, hn::InterleaveUpper(du, row2, row3));
-  a = hn::BitCast(du, hn::InterleaveLower(d64, lower01, lower23));
-  b = hn::BitCast(du, hn::InterleaveUpper(d64, lower01, lower23));
-  c = hn::BitCast(du, hn::InterleaveLower(d64, upper01, upper23));
-  d = hn::BitCast(du, hn::InterleaveUpper(d64, upper01, upper23));
+  VU row_x, row_y, row_z, unused;
+  TransposeBlocks(LoadNormalBlocks(du, normals, vertices), LoadNormalBlocks(du, normals, vertices + 1),
+                  LoadNormalBlocks(du, normals, vertices + 2), LoadNormalBlocks(du, normals, vertices + 3), row_x,
+                  row_y, row_z, unused);
+  x = hn::BitCast(DF(), row_x);
+  y = hn::BitCast(DF(), row_y);
+  z = hn::BitCast(DF(), row_z);
 }
 
 #endif
 
-/// A quarter of the records of ids[0, lanes). Uniform: all ids are the same, and one record is loaded for all lanes.
-template <bool kUniform>
-HWY_INLINE void LoadQuarter(const ShadeTriangle* triangles, int quarter, const std::uint32_t* ids, VU& a, VU& b, VU& c,
-                            VU& d) {
-  const auto* words = reinterpret_cast<const std::uint32_t*>(triangles) + 4 * quarter;
-  if constexpr (kUniform) {
-    const std::uint32_t* word = words + std::size_t{kWords} * ids[0];
-    a = hn::Set(DU(), word[0]);
-    b = hn::Set(DU(), word[1]);
-    c = hn::Set(DU(), word[2]);
-    d = hn::Set(DU(), word[3]);
-  } else {
-    LoadFourWords(words, ids, a, b, c, d);
-  }
+/// One record for all lanes.
+HWY_INLINE void BroadcastRecord(const std::uint32_t* record, VU& w0, VU& w1, VU& w2, VU& w3, VU& w4, VU& w5, VU& w6,
+                                VU& w7, VU& w8, VU& w9, VU& w10, VU& w11, VU& w12, VU& w13, VU& w14, VU& w15) {
+  VU* const out[kWords] = {&w0, &w1, &w2, &w3, &w4, &w5, &w6, &w7, &w8, &w9, &w10, &w11, &w12, &w13, &w14, &w15};
+  for (int word = 0; word < kWords; ++word) *out[word] = hn::Set(DU(), record[word]);
 }
 
 /// Evaluates the triangles at one vector of pixels; returns the lanes that are of the surface.
@@ -117,12 +155,14 @@ HWY_INLINE MF FetchVector(const ShadeTriangle* triangles, const std::uint32_t* i
   const DF d;
   const DI di;
   const DU du;
-  // The words of a record in order: u0 u0 u0 ux, ux ux uy uy, uy ref vertex vertex, vertex surface triangle back_face.
   VU u00, u01, u02, ux0, ux1, ux2, uy0, uy1, uy2, ref, vertex0, vertex1, vertex2, surface, triangle, back_face;
-  LoadQuarter<kUniform>(triangles, 0, ids, u00, u01, u02, ux0);
-  LoadQuarter<kUniform>(triangles, 1, ids, ux1, ux2, uy0, uy1);
-  LoadQuarter<kUniform>(triangles, 2, ids, uy2, ref, vertex0, vertex1);
-  LoadQuarter<kUniform>(triangles, 3, ids, vertex2, surface, triangle, back_face);
+  const auto* words = reinterpret_cast<const std::uint32_t*>(triangles);
+  if constexpr (kUniform)
+    BroadcastRecord(words + std::size_t{kWords} * ids[0], u00, u01, u02, ux0, ux1, ux2, uy0, uy1, uy2, ref, vertex0,
+                    vertex1, vertex2, surface, triangle, back_face);
+  else
+    LoadRecords(words, ids, u00, u01, u02, ux0, ux1, ux2, uy0, uy1, uy2, ref, vertex0, vertex1, vertex2, surface,
+                triangle, back_face);
   static_cast<void>(triangle);
 
   const VI ref_xy = hn::BitCast(di, ref);
@@ -190,7 +230,7 @@ HWY_INLINE std::uint64_t FetchFragments(const ShadeTriangle* triangles, const st
     alignas(64) std::uint32_t lane_ids[kMaxLanes];
     hn::Store(id, du, lane_ids);
     const bool uniform = hn::AllTrue(du, hn::Eq(id, first));
-    out.uniform[begin] = uniform ? first_id : kNoTriangle;
+    out.uniform[begin] = uniform ? 1 : 0;
     const VI x = hn::Add(lane_x, hn::Set(di, static_cast<std::int32_t>(begin) & kRowMask));
     const VI y = hn::Add(lane_y, hn::Set(di, static_cast<std::int32_t>(begin) / kBlockSize));
     const MF of_surface = uniform ? FetchVector<true, kPatterned>(triangles, lane_ids, surface_id, x, y, begin, out)
@@ -203,40 +243,31 @@ HWY_INLINE std::uint64_t FetchFragments(const ShadeTriangle* triangles, const st
   return all_mine;
 }
 
-/// Object-space normals of all vectors, interpolated between the corners' normals of equal length.
-HWY_INLINE void FetchSmoothNormals(const std::uint32_t* normals, BlockFragments& fragments, CornerNormals& last) {
+/// Object-space normals of all vectors, interpolated between the corners'.
+HWY_INLINE void FetchSmoothNormals(const VertexNormal* normals, BlockFragments& fragments) {
   const DF d;
   for (std::size_t begin = 0; begin < kBlockPixels; begin += hn::Lanes(d)) {
     if (fragments.lanes[begin] == 0) continue;
-    const std::uint32_t uniform = fragments.uniform[begin];
-    const bool known = uniform != kNoTriangle && uniform == last.triangle;
+    const bool uniform = fragments.uniform[begin] != 0;
     VF nx = hn::Zero(d);
     VF ny = hn::Zero(d);
     VF nz = hn::Zero(d);
     for (int corner = 0; corner < 3; ++corner) {
-      VF x, y, z, scale;
-      float* kept = last.corner[corner];
-      if (known) {
-        x = Constant(kept[0]);
-        y = Constant(kept[1]);
-        z = Constant(kept[2]);
-        scale = Constant(kept[3]);
+      const std::int32_t* vertices = fragments.vertex[corner] + begin;
+      VF x, y, z;
+      if (uniform) {
+        const VertexNormal& normal = normals[vertices[0]];
+        x = Constant(normal.x);
+        y = Constant(normal.y);
+        z = Constant(normal.z);
       } else {
-        const VU packed = Gather(normals, hn::Load(DI(), fragments.vertex[corner] + begin));
-        UnpackDirections(packed, x, y, z, scale);
-        if (uniform != kNoTriangle) {
-          kept[0] = hn::GetLane(x);
-          kept[1] = hn::GetLane(y);
-          kept[2] = hn::GetLane(z);
-          kept[3] = hn::GetLane(scale);
-        }
+        LoadNormals(normals, vertices, x, y, z);
       }
-      const VF weight = hn::Mul(hn::Load(d, fragments.barycentric[corner] + begin), scale);
+      const VF weight = hn::Load(d, fragments.barycentric[corner] + begin);
       nx = corner == 0 ? hn::Mul(weight, x) : hn::Add(nx, hn::Mul(weight, x));
       ny = corner == 0 ? hn::Mul(weight, y) : hn::Add(ny, hn::Mul(weight, y));
       nz = corner == 0 ? hn::Mul(weight, z) : hn::Add(nz, hn::Mul(weight, z));
     }
-    if (uniform != kNoTriangle) last.triangle = uniform;
     hn::Store(nx, d, fragments.normal[0] + begin);
     hn::Store(ny, d, fragments.normal[1] + begin);
     hn::Store(nz, d, fragments.normal[2] + begin);

@@ -39,7 +39,7 @@ struct Block {
 
 struct SurfaceJob;
 using BlockKernel = std::uint64_t (*)(const SurfaceJob& job, Block& block, std::uint64_t pending,
-                                      BlockFragments& fragments, CornerNormals& last);
+                                      BlockFragments& fragments);
 
 /// What is the same for all pixels of a surface.
 struct SurfaceJob {
@@ -156,13 +156,12 @@ HWY_INLINE void StoreColors(std::uint64_t lanes, VF r, VF g, VF b, Block& block,
 
 /// Shades those of the pending pixels (bits in tileIndex() order) that show the job's surface; returns the rest.
 template <ShadeModel kModel, bool kPatterned>
-std::uint64_t ShadeBlock(const SurfaceJob& job, Block& block, std::uint64_t pending, BlockFragments& fragments,
-                         CornerNormals& last) {
+std::uint64_t ShadeBlock(const SurfaceJob& job, Block& block, std::uint64_t pending, BlockFragments& fragments) {
   const DF d;
   const DI di;
   const std::uint64_t mine = FetchFragments<kPatterned>(job.scene->triangles.data(), block.triangle, job.surface_id,
                                                         pending, block.x, block.y, fragments);
-  if constexpr (kModel == ShadeModel::kSmooth) FetchSmoothNormals(job.surface->normal, fragments, last);
+  if constexpr (kModel == ShadeModel::kSmooth) FetchSmoothNormals(job.surface->normal, fragments);
   if constexpr (kModel == ShadeModel::kFlat) FetchFlatNormals(job.surface->position_object, fragments);
   if constexpr (kPatterned) FetchAlbedo(*job.surface, *job.material, fragments);
 
@@ -352,7 +351,6 @@ ShadeCounts ShadeTile(const ShadeScene& scene, const TileVisibility& tile, int x
   ShadeCounts counts;
   SurfaceJob job{};
   BlockFragments fragments;
-  CornerNormals last;
   Block block{};
   constexpr int kRowsAhead = 4;  // blocks
   for (int index = 0; index < kRowsAhead; ++index) PrefetchBlockRows(target, x0 + blockX(index), y0 + blockY(index));
@@ -374,13 +372,10 @@ ShadeCounts ShadeTile(const ShadeScene& scene, const TileVisibility& tile, int x
       FillBlock(block, background, target);
       continue;
     }
-    for (std::uint64_t pending = covered; pending != 0; pending = job.kernel(job, block, pending, fragments, last)) {
+    for (std::uint64_t pending = covered; pending != 0; pending = job.kernel(job, block, pending, fragments)) {
       const std::uint32_t first_id = block.triangle[std::countr_zero(pending)];
       const std::uint32_t surface_id = scene.triangles[first_id].surface;
-      if (job.scene == nullptr || job.surface_id != surface_id) {
-        job = MakeSurfaceJob(scene, surface_id);
-        last.triangle = kNoTriangle;
-      }
+      if (job.scene == nullptr || job.surface_id != surface_id) job = MakeSurfaceJob(scene, surface_id);
     }
     if (target.srgb != nullptr) WriteSrgb(block, background, *target.srgb);
     if (target.linear != nullptr) WriteLinear(block, background, *target.linear);

@@ -73,18 +73,6 @@ DVec3 barycentrics(const ShadeTriangle& t, double x, double y) {
   return u / (u.x + u.y + u.z);
 }
 
-DVec3 unpackedNormal(std::uint32_t packed) {
-  double px = (packed & 0xFFFFU) * (2.0 / 65535.0) - 1.0;
-  double py = (packed >> 16) * (2.0 / 65535.0) - 1.0;
-  const double pz = 1.0 - std::abs(px) - std::abs(py);
-  if (pz < 0.0) {
-    const double folded_x = std::copysign(1.0 - std::abs(py), px);
-    py = std::copysign(1.0 - std::abs(px), py);
-    px = folded_x;
-  }
-  return glm::normalize(DVec3(px, py, pz));
-}
-
 DVec3 position(const Surface& surface, std::uint32_t vertex) {
   return {surface.position_object[0][vertex], surface.position_object[1][vertex], surface.position_object[2][vertex]};
 }
@@ -95,7 +83,10 @@ DVec3 worldNormal(const ShadeMaterial& material, const Surface& surface, const S
     const DVec3 p0 = position(surface, t.vertex[0]);
     normal = glm::cross(position(surface, t.vertex[1]) - p0, position(surface, t.vertex[2]) - p0);
   } else {
-    for (int i = 0; i < 3; ++i) normal += b[i] * unpackedNormal(surface.normal[t.vertex[i]]);
+    for (int i = 0; i < 3; ++i) {
+      const VertexNormal& n = surface.normal[t.vertex[i]];
+      normal += b[i] * DVec3(n.x, n.y, n.z);
+    }
   }
   const DVec3 world = DMat3(surface.world_from_object_normal) * normal;
   const double length = glm::length(world);

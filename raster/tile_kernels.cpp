@@ -197,53 +197,70 @@ struct BlockPixels {
   int begin, end;
 };
 
-// Draws those of the pixels that N edges leave covered; returns a depth that none of them is behind.
+// Draws those of the pixels that N edges (with their EdgeLanes()) leave covered; returns a depth that none of them is
+// behind.
 template <int N>
-HWY_INLINE VF DrawPixels(const TriangleInTile& in, const BlockPixels& pixels, TileState& state) {
-  const auto lanes = static_cast<int>(hn::Lanes(di));
+HWY_INLINE VF DrawPixels(const TriangleInTile& in, VI lanes0, VI lanes1, VI lanes2, const BlockPixels& pixels,
+                         TileState& state) {
+  // A vector is a piece of a row or a few whole rows: edges and depths move on by a row, or a few, at a time.
+  constexpr int kLanes = static_cast<int>(hn::MaxLanes(di));
+  constexpr int kColumns = std::min(kLanes, kBlockSize);
+  constexpr int kRows = kLanes / kColumns;
   const TileEdges edges = in.edges;
-  std::int32_t c[3] = {};
-  for (int i = 0; i < N; ++i) c[i] = edges.c[i] + edges.a[i] * pixels.x + edges.b[i] * pixels.y;
-  const VI lanes0 = N > 0 ? EdgeLanes(edges.a[0], edges.b[0]) : hn::Zero(di);
-  const VI lanes1 = N > 1 ? EdgeLanes(edges.a[1], edges.b[1]) : hn::Zero(di);
-  const VI lanes2 = N > 2 ? EdgeLanes(edges.a[2], edges.b[2]) : hn::Zero(di);
   const DepthPlane& plane = in.triangle.depth;
-  const VF z_ref = hn::Set(df, plane.z);
   const VF dzdx = hn::Set(df, plane.dzdx);
   const VF dzdy = hn::Set(df, plane.dzdy);
   const VF lo = hn::Set(df, plane.lo);
   const VF hi = hn::Set(df, plane.hi);
-  const VF block_dx = hn::Set(df, static_cast<float>(in.x0 + pixels.x));
-  const VF block_dy = hn::Set(df, static_cast<float>(in.y0 + pixels.y));
+  const VF rows = hn::Set(df, static_cast<float>(kRows));
+  const VI step0 = hn::Set(di, N > 0 ? edges.b[0] * kRows : 0);
+  const VI step1 = hn::Set(di, N > 1 ? edges.b[1] * kRows : 0);
+  const VI step2 = hn::Set(di, N > 2 ? edges.b[2] * kRows : 0);
   const std::uint32_t shade = in.triangle.shade;
   const int block = pixels.y * kTileSize + pixels.x * kBlockSize;  // number of the block's first pixel in the tile
+  const int first_row = pixels.begin / kBlockSize;
 
   VF deepest = hn::Set(df, 1.0F);
-  for (int p = pixels.begin; p < pixels.end; p += lanes) {
-    const int column = p & (kBlockSize - 1);
-    const int row = p >> 3;
-    VI outside = hn::Zero(di);
-    if (N > 0) outside = hn::Add(hn::Set(di, c[0] + edges.a[0] * column + edges.b[0] * row), lanes0);
-    if (N > 1) outside = hn::Or(outside, hn::Add(hn::Set(di, c[1] + edges.a[1] * column + edges.b[1] * row), lanes1));
-    if (N > 2) outside = hn::Or(outside, hn::Add(hn::Set(di, c[2] + edges.a[2] * column + edges.b[2] * row), lanes2));
-    const VF dx = hn::Add(block_dx, hn::Load(df, kBlockOffsets.column + p));
-    const VF dy = hn::Add(block_dy, hn::Load(df, kBlockOffsets.row + p));
-    const VF z_plane = hn::Add(hn::Add(z_ref, hn::Mul(dzdx, dx)), hn::Mul(dzdy, dy));
-    const VF z = hn::Min(hn::Max(z_plane, lo), hi);
-    const auto covered = hn::RebindMask(df, hn::Not(hn::Lt(outside, hn::Zero(di))));
-    deepest = hn::Min(deepest, WriteVector(z, covered, shade, block + p, state));
+  for (int column = 0; column < kBlockSize; column += kColumns) {
+    const auto edge_at_first = [&](int i, VI lanes) HWY_ATTR {
+      const std::int32_t at = edges.c[i] + edges.a[i] * (pixels.x + column) + edges.b[i] * (pixels.y + first_row);
+      return hn::Add(hn::Set(di, at), lanes);
+    };
+    VI e0 = N > 0 ? edge_at_first(0, lanes0) : hn::Zero(di);
+    VI e1 = N > 1 ? edge_at_first(1, lanes1) : hn::Zero(di);
+    VI e2 = N > 2 ? edge_at_first(2, lanes2) : hn::Zero(di);
+    const VF dx =
+        hn::Add(hn::Set(df, static_cast<float>(in.x0 + pixels.x + column)), hn::Load(df, kBlockOffsets.column));
+    VF dy = hn::Add(hn::Set(df, static_cast<float>(in.y0 + pixels.y + first_row)), hn::Load(df, kBlockOffsets.row));
+    const VF z_column = hn::Add(hn::Set(df, plane.z), hn::Mul(dzdx, dx));
+    for (int p = pixels.begin + column; p < pixels.end; p += kRows * kBlockSize) {
+      VI outside = e0;
+      if (N > 1) outside = hn::Or(outside, e1);
+      if (N > 2) outside = hn::Or(outside, e2);
+      const VF z = hn::Min(hn::Max(hn::Add(z_column, hn::Mul(dzdy, dy)), lo), hi);
+      const auto covered = hn::RebindMask(df, hn::Not(hn::Lt(outside, hn::Zero(di))));
+      deepest = hn::Min(deepest, WriteVector(z, covered, shade, block + p, state));
+      if (N > 0) e0 = hn::Add(e0, step0);
+      if (N > 1) e1 = hn::Add(e1, step1);
+      if (N > 2) e2 = hn::Add(e2, step2);
+      dy = hn::Add(dy, rows);
+    }
   }
   return deepest;
 }
 
 // Triangles within a few blocks: every vector under the box is tested against all edges.
 void DrawMedium(const TriangleInTile& in, const TileBox& box, TileState& state) {
-  const auto lanes = static_cast<int>(hn::Lanes(di));
+  constexpr int rows = std::max(1, static_cast<int>(hn::MaxLanes(di)) / kBlockSize);
+  const VI lanes0 = EdgeLanes(in.edges.a[0], in.edges.b[0]);
+  const VI lanes1 = EdgeLanes(in.edges.a[1], in.edges.b[1]);
+  const VI lanes2 = EdgeLanes(in.edges.a[2], in.edges.b[2]);
   for (int y = box.y_min & ~7; y <= box.y_max; y += kBlockSize) {
-    const int begin = (std::max(box.y_min - y, 0) * kBlockSize) & ~(lanes - 1);
+    const int begin = (std::max(box.y_min - y, 0) * kBlockSize) & ~(rows * kBlockSize - 1);
     const int end = (std::min(box.y_max - y, kBlockSize - 1) + 1) * kBlockSize;
     for (int x = box.x_min & ~7; x <= box.x_max; x += kBlockSize)
-      if (!(in.triangle.depth.hi < state.farthest[y + x / kBlockSize])) DrawPixels<3>(in, {x, y, begin, end}, state);
+      if (!(in.triangle.depth.hi < state.farthest[y + x / kBlockSize]))
+        DrawPixels<3>(in, lanes0, lanes1, lanes2, {x, y, begin, end}, state);
   }
 }
 
@@ -251,13 +268,17 @@ void DrawMedium(const TriangleInTile& in, const TileBox& box, TileState& state) 
 template <int N>
 void DrawBig(const TriangleInTile& in, const TileBox& box, TileState& state) {
   const BlockMasks blocks = ClassifyBlocks(in.edges);
+  const VI lanes0 = N > 0 ? EdgeLanes(in.edges.a[0], in.edges.b[0]) : hn::Zero(di);
+  const VI lanes1 = N > 1 ? EdgeLanes(in.edges.a[1], in.edges.b[1]) : hn::Zero(di);
+  const VI lanes2 = N > 2 ? EdgeLanes(in.edges.a[2], in.edges.b[2]) : hn::Zero(di);
   for (std::uint64_t rest = blocks.touched & BlocksUnder(box); rest != 0; rest &= rest - 1) {
     const int block = std::countr_zero(rest);
     if (in.triangle.depth.hi < state.farthest[block]) continue;
     const BlockPixels pixels{(block % kBlocksPerTileSide) * kBlockSize, (block / kBlocksPerTileSide) * kBlockSize, 0,
                              kBlockPixels};
     const bool full = (blocks.full >> block & 1U) != 0;
-    const VF deepest = full ? DrawPixels<0>(in, pixels, state) : DrawPixels<N>(in, pixels, state);
+    const VF deepest = full ? DrawPixels<0>(in, lanes0, lanes1, lanes2, pixels, state)
+                            : DrawPixels<N>(in, lanes0, lanes1, lanes2, pixels, state);
     state.farthest[block] = hn::GetLane(hn::MinOfLanes(df, deepest));
   }
 }

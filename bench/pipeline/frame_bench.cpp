@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/memory_bandwidth.h"
 #include "core/task_pool.h"
 #include "pipeline/cull.h"
 #include "pipeline/prepare.h"
@@ -24,24 +25,25 @@ constexpr int kHeight = 1080;
 void transformAndProject(benchmark::State& state) {
   const auto patches = static_cast<std::size_t>(state.range(0));
   grouping::VertexRuns vertices;
-  for (auto& axis : vertices.full) axis.assign(patches * kMaxPatchVertices + grouping::kRunAlignment, 0.25F);
+  const auto stride = static_cast<std::uint32_t>(patches * kMaxPatchVertices);
+  vertices.full.assign(std::size_t{3} * stride + grouping::kRunAlignment, 0.25F);
   for (std::uint32_t p = 0; p < patches; ++p) {
-    vertices.patches.push_back({p, 1, p * kMaxPatchVertices, 0});
+    vertices.patches.push_back(
+        {.first_run = p, .run_count = 1, .first_full = p * kMaxPatchVertices, .full_stride = stride});
     vertices.runs.push_back({.vertex_count = kMaxPatchVertices});
   }
   Mat4 clip_from_object(1.0F);
   clip_from_object[3] = {0.1F, 0.2F, 0.3F, 2.0F};
   const Viewport viewport(kWidth, kHeight);
-  static ClipVertices clip;
   static ProjectedVertices projected;
   for (auto _ : state)
     for (const grouping::PatchRuns& patch : vertices.patches) {
-      transformPatch(vertices, patch, clip_from_object, clip);
-      projectVertices(clip, 0, kMaxPatchVertices, viewport, projected);
+      transformPatch(vertices, patch, clip_from_object, viewport, projected);
       benchmark::DoNotOptimize(projected);
     }
   state.counters["vertices/s"] = benchmark::Counter(static_cast<double>(patches * kMaxPatchVertices),
                                                     benchmark::Counter::kIsIterationInvariantRate);
+  countMemoryBound(state, "vertices/s", {.read = 3 * sizeof(float)});
 }
 BENCHMARK(transformAndProject)->Name("pipeline/transform")->ArgName("patches")->Arg(16)->Arg(16384);
 
@@ -58,7 +60,19 @@ constexpr std::array<Load, 6> kLoads = {{{"sphere-1M", "sphere?n=289", true},
                                          {"city", "city?blocks=20", true},
                                          {"gallery", "gallery", true}}};
 
-// Whole frames with the times of their stages (cpu, summed over threads) as counters.
+/// What a frame must move at least, if nothing that is binned stays in a cache: positions and corners of the triangles
+/// that are drawn, the binned ones out and in again, normals, and the picture.
+ItemBytes frameBytes(const Counters& counters) {
+  const auto vertices = static_cast<double>(counters.vertices_transformed);
+  const double binned = sizeof(raster::ShadeTriangle) * static_cast<double>(counters.triangles_binned) +
+                        sizeof(raster::BinEntry) * static_cast<double>(counters.bin_entries);
+  return {.read = vertices * (3 * sizeof(float) + sizeof(raster::VertexNormal)) +
+                  3.0 * static_cast<double>(counters.triangles_assembled) + binned,
+          .write = binned + sizeof(Rgba8) * kWidth * kHeight};
+}
+
+// Whole frames with the times of their stages (cpu, summed over threads) as counters, and the time that one thread
+// would need to move their bytes.
 void drawFrame(benchmark::State& state, const Load& load, int threads) {
   TaskPool pool(threads);
   scenes::Scene scene = scenes::buildBuiltin(load.spec);
@@ -87,6 +101,7 @@ void drawFrame(benchmark::State& state, const Load& load, int threads) {
         benchmark::Counter(static_cast<double>(cpu[stage]) / 1e6, benchmark::Counter::kAvgIterations);
   state.counters["binned"] = static_cast<double>(frame.counters.triangles_binned);
   state.counters["pixels"] = static_cast<double>(frame.counters.pixels_shaded);
+  state.counters["memory_ms"] = 1e3 * memorySeconds(frameBytes(frame.counters));
 }
 
 // A mesh's way from plain arrays to patches.

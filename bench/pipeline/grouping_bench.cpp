@@ -22,11 +22,11 @@ grouping::VertexRuns patchOfRuns(RunKind kind, ParameterForm form, std::uint32_t
   runs.form = form;
   runs.step = 1.0F / 65536.0F;
   runs.lines = {{Vec3(0.1F), Vec3(0.2F), 0.0F, 1e-5F}};
-  for (auto& axis : runs.full) axis.assign(kVertexSlots, 0.25F);
-  for (auto& parameter : runs.quantised) parameter.assign(kVertexSlots, 1234);
-  for (auto& parameter : runs.parameters) parameter.assign(kVertexSlots, 0.25F);
+  runs.full.assign(3 * kVertexSlots, 0.25F);
+  runs.quantised.assign(kVertexSlots, 1234);
+  runs.parameters.assign(kVertexSlots, Vec2(0.25F));
   const std::uint32_t count = kMaxPatchVertices / length;
-  runs.patches.push_back({0, count, 0, 0});
+  runs.patches.push_back({.run_count = count, .full_stride = kMaxPatchVertices});
   for (std::uint32_t r = 0; r < count; ++r)
     runs.runs.push_back({.kind = kind,
                          .axis = static_cast<std::uint8_t>(kind == RunKind::kLine ? 0 : r % 3),
@@ -41,10 +41,10 @@ void transformRuns(benchmark::State& state, RunKind kind, ParameterForm form) {
   const grouping::VertexRuns runs = patchOfRuns(kind, form, length);
   Mat4 clip_from_object(1.0F);
   clip_from_object[3] = {0.1F, 0.2F, 0.3F, 2.0F};
-  static ClipVertices clip;
+  static ProjectedVertices projected;
   for (auto _ : state) {
-    transformPatch(runs, runs.patches[0], clip_from_object, clip);
-    benchmark::DoNotOptimize(clip);
+    transformPatch(runs, runs.patches[0], clip_from_object, Viewport(1920, 1080), projected);
+    benchmark::DoNotOptimize(projected);
     benchmark::ClobberMemory();
   }
   state.counters["vertices/s"] =

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "bench/memory_bandwidth.h"
 #include "raster/bins.h"
 #include "raster/setup.h"
 #include "raster/tile.h"
@@ -21,8 +22,7 @@ constexpr std::uint32_t kPatchTriangles = 80;
 
 /// Front-facing triangles with legs of `size` pixels, turned at random, in patches that lie together as in a mesh.
 struct Workload {
-  std::vector<std::int32_t> x_fx, y_fx;
-  std::vector<float> depth, inv_w;
+  std::vector<ScreenVertex> vertices;
   std::array<std::vector<std::uint8_t>, 3> corner;
   std::vector<std::uint32_t> source;
   std::uint32_t patches;
@@ -54,10 +54,7 @@ struct Workload {
     addVertex(x, y, z);
   }
   void addVertex(double x, double y, float z) {
-    x_fx.push_back(static_cast<std::int32_t>(x * kSubpixels));
-    y_fx.push_back(static_cast<std::int32_t>(y * kSubpixels));
-    depth.push_back(z);
-    inv_w.push_back(1.0F);
+    vertices.push_back({static_cast<std::int32_t>(x * kSubpixels), static_cast<std::int32_t>(y * kSubpixels), z, 1.0F});
   }
 
   SetupCounts setUp(Binner& binner) const {
@@ -69,7 +66,7 @@ struct Workload {
     for (std::uint32_t p = 0; p < patches; ++p) {
       const std::size_t first = std::size_t{p} * 3 * kPatchTriangles;
       triangles.first_vertex = static_cast<std::uint32_t>(first);
-      setupTriangles({&x_fx[first], &y_fx[first], &depth[first], &inv_w[first]}, triangles, binner, counts);
+      setupTriangles(&vertices[first], triangles, binner, counts);
     }
     return counts;
   }
@@ -83,8 +80,15 @@ std::uint32_t patchesFor(double size) {
   return size > 50.0 ? 20 : size > 10.0 ? 200 : 2000;
 }
 
-// Up to 4x4 pixels: some 400 instructions for a vector of triangles and 60 more for each that is binned, which writes
-// 96 bytes; beyond, 150 and the bins of every tile that it touches.
+/// Bytes of a binned triangle: its record, its entries, and its edges if it is large.
+double binnedBytes(const Binner& binner, const SetupCounts& counts, double size) {
+  const double large = size > 4.0 ? sizeof(LargeTriangle) : 0.0;
+  const double entries = static_cast<double>(binner.entryCount()) / static_cast<double>(counts.binned);
+  return sizeof(ShadeTriangle) + large + entries * sizeof(BinEntry);
+}
+
+// Up to 4x4 pixels: bound by the instructions of the kernel (1100 for AVX-512, for 16 triangles) and not by the 96
+// bytes that a binned one takes, as memory_triangles/s shows; beyond, by the bins of every tile that it touches.
 void setUpAndBin(benchmark::State& state) {
   const Workload work(sizeOf(state), patchesFor(sizeOf(state)));
   ShadeTriangleArena arena;
@@ -99,11 +103,13 @@ void setUpAndBin(benchmark::State& state) {
   if (counts.binned + counts.no_sample + counts.back_facing != triangles) throw std::logic_error("triangles got lost");
   state.counters["triangles/s"] =
       benchmark::Counter(static_cast<double>(triangles), benchmark::Counter::kIsIterationInvariantRate);
-  state.counters["binned"] = static_cast<double>(counts.binned) / static_cast<double>(triangles);
+  const double binned = static_cast<double>(counts.binned) / static_cast<double>(triangles);
+  state.counters["binned"] = binned;
+  countMemoryBound(state, "triangles/s", {.write = binned * binnedBytes(binner, counts, sizeOf(state))});
 }
 
-// Small triangles: their pixels, one by one. Large ones: 8 bytes read and up to 8 written per pixel, all within a tile
-// of 32 KB in the first-level cache.
+// Small triangles: their pixels, one by one, and the entry comes from memory. Large ones: 8 bytes read and up to 8
+// written per pixel, all within a tile of 32 KB in the first-level cache.
 void rasterize(benchmark::State& state) {
   const Workload work(sizeOf(state), patchesFor(sizeOf(state)));
   ShadeTriangleArena arena;
@@ -123,6 +129,7 @@ void rasterize(benchmark::State& state) {
   state.counters["triangles/s"] =
       benchmark::Counter(static_cast<double>(counts.binned), benchmark::Counter::kIsIterationInvariantRate);
   state.counters["pixels/s"] = benchmark::Counter(pixels, benchmark::Counter::kIsIterationInvariantRate);
+  countMemoryBound(state, "triangles/s", {.read = binnedBytes(binner, counts, size) - sizeof(ShadeTriangle)});
 }
 
 void sizes(benchmark::internal::Benchmark* b) {

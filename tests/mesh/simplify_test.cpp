@@ -187,6 +187,30 @@ TEST_CASE("mesh/simplify: the rim of a thin sheet does not shrink") {
   CHECK(distanceBetween(m, r.mesh, 20'000, pool).hausdorff() < 0.02);
 }
 
+TEST_CASE("mesh/simplify: a thin strip at a border is not drawn in") {
+  // Hills, and a needle as long as an edge and a thousandth as wide that hangs at their border in four pieces.
+  Mesh m = makeGrid(40);
+  for (Vec3& p : m.positions) p.z += 0.05F * std::sin(9.0F * p.x) * std::cos(7.0F * p.y);
+  const std::uint32_t root = 0, other = 1;
+  const DVec3 a(m.positions[root]), along = a - DVec3(m.positions[41 + 1]);
+  const DVec3 across = 0.001 * (DVec3(m.positions[other]) - a);
+  std::uint32_t left = root, right = static_cast<std::uint32_t>(m.vertexCount());
+  m.positions.emplace_back(a + across);
+  m.triangles.push_back({root, right, other});
+  for (int k = 1; k <= 4; ++k) {
+    const auto next = static_cast<std::uint32_t>(m.vertexCount());
+    m.positions.emplace_back(a + 0.25 * k * along);
+    m.positions.emplace_back(a + 0.25 * k * along + across);
+    m.triangles.push_back({left, next, right});
+    m.triangles.push_back({right, next, next + 1});
+    left = next, right = next + 1;
+  }
+  const double edge = glm::length(along);
+  TaskPool pool(2);
+  const SimplifyResult r = checkedSimplify(m, toTriangles(m.triangleCount() / 8));
+  CHECK(distanceToSurface(m, r.mesh, 20'000, pool).max / edge < 0.4);
+}
+
 TEST_CASE("mesh/simplify: no triangle is turned over") {
   const Mesh m = makeBumpySphere();  // seen from its centre all triangles are turned away
   for (const std::size_t target : {3000U, 600U, 150U}) {

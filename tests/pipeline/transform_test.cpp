@@ -27,6 +27,7 @@ struct OneRun {
     vertices.patches[0].run_count = 1;
     vertices.runs.resize(1);
     vertices.runs[0].vertex_count = static_cast<std::uint16_t>(count);
+    vertices.patches[0].full_stride = count;
   }
   grouping::PatchRuns& patch() { return vertices.patches[0]; }
   grouping::VertexRun& run() { return vertices.runs[0]; }
@@ -42,7 +43,7 @@ std::vector<float> randomFloats(std::mt19937& rng, std::size_t count) {
 OneRun fullRun(std::mt19937& rng, std::uint32_t count, std::uint8_t axis) {
   OneRun one(count);
   one.run().axis = axis;
-  for (auto& coordinates : one.vertices.full) coordinates = randomFloats(rng, count);
+  one.vertices.full = randomFloats(rng, std::size_t{3} * count);
   return one;
 }
 
@@ -52,6 +53,10 @@ Mat4 randomMatrix(std::mt19937& rng) {
   for (int c = 0; c < 4; ++c)
     for (int r = 0; r < 4; ++r) m[c][r] = unit(rng);
   return m;
+}
+
+void transformWhole(OneRun& one, std::uint32_t count, const Mat4& clip_from_object, ClipVertices& clip) {
+  transformRun(one.vertices, one.patch(), one.run(), RunStart(one.patch()), 0, count, clip_from_object, clip);
 }
 
 void checkBits(const ClipVertices& clip, std::uint32_t v, const Vec4& expected) {
@@ -74,25 +79,30 @@ TEST_CASE("pipeline/transform: every SIMD target equals the references, bit for 
       ClipVertices clip;
       ProjectedVertices projected;
       alignas(64) std::int32_t codes[kVertexSlots];
-      transformPatch(one.vertices, one.patch(), clip_from_object, clip);
+      transformWhole(one, count, clip_from_object, clip);
       projectVertices(clip, 0, count, viewport, projected);
+      ProjectedVertices at_once;
+      transformPatch(one.vertices, one.patch(), clip_from_object, viewport, at_once);
       const OutcodeSummary summary = outcodeVertices(clip, 0, count, viewport, codes);
       std::int32_t all = -1;
       std::int32_t any = 0;
       for (std::uint32_t v = 0; v < count; ++v) {
         CAPTURE(v);
-        const Vec3 position(one.vertices.full[0][v], one.vertices.full[1][v], one.vertices.full[2][v]);
+        const std::vector<float>& full = one.vertices.full;
+        const Vec3 position(full[v], full[v + count], full[v + 2 * count]);
         const Vec4 expected = transformVertex(position, clip_from_object, one.run().axis);
         checkBits(clip, v, expected);
         CHECK(codes[v] == outcodeVertex(expected, viewport));
         all &= codes[v];
         any |= codes[v];
         if (expected.w < 0.01F) continue;  // meaningless, and outside the range of fixed point
-        const ProjectedVertex p = projectVertex(expected, viewport);
-        CHECK(projected.x_fx[v] == p.x_fx);
-        CHECK(projected.y_fx[v] == p.y_fx);
-        CHECK(bits(projected.depth[v]) == bits(p.depth));
-        CHECK(bits(projected.inv_w[v]) == bits(p.inv_w));
+        const raster::ScreenVertex p = projectVertex(expected, viewport);
+        for (const raster::ScreenVertex& drawn : {projected[v], at_once[v]}) {
+          CHECK(drawn.x_fx == p.x_fx);
+          CHECK(drawn.y_fx == p.y_fx);
+          CHECK(bits(drawn.depth) == bits(p.depth));
+          CHECK(bits(drawn.inv_w) == bits(p.inv_w));
+        }
       }
       CHECK(summary.all == all);
       CHECK(summary.any == any);
@@ -119,21 +129,21 @@ TEST_CASE("pipeline/transform: planes and lines equal the reference on every SIM
           one.run().line = 0;
           runs.lines = {{Vec3(0.1F, 0.2F, 0.3F), Vec3(0.9F, -0.4F, 0.2F), -0.3F, 1e-5F}};
         }
-        for (std::size_t k = 0; k < 2; ++k) {
-          runs.parameters[k] = randomFloats(rng, count);
-          for (std::uint32_t v = 0; v < count + grouping::kRunAlignment; ++v)
-            runs.quantised[k].push_back(static_cast<std::uint16_t>(word(rng)));
+        const std::vector<float> floats = randomFloats(rng, std::size_t{2} * count + grouping::kRunAlignment);
+        for (std::uint32_t v = 0; v < count + grouping::kRunAlignment; ++v) {
+          runs.parameters.emplace_back(floats[2 * v], floats[2 * v + 1]);
+          runs.quantised.push_back(static_cast<std::uint32_t>(word(rng)) | static_cast<std::uint32_t>(word(rng)) << 16);
         }
         const Mat4 clip_from_object = randomMatrix(rng);
         const auto stored = [&](std::uint32_t v) {
           return form == grouping::ParameterForm::k16Bit
-                     ? StoredParameters{static_cast<float>(runs.quantised[0][v]),
-                                        static_cast<float>(runs.quantised[1][v])}
-                     : StoredParameters{runs.parameters[0][v], runs.parameters[1][v]};
+                     ? StoredParameters{static_cast<float>(runs.quantised[v] & 0xFFFFU),
+                                        static_cast<float>(runs.quantised[v] >> 16)}
+                     : StoredParameters{runs.parameters[v].x, runs.parameters[v].y};
         };
         forEachTarget([&] {
           ClipVertices clip;
-          transformPatch(runs, one.patch(), clip_from_object, clip);
+          transformWhole(one, count, clip_from_object, clip);
           for (std::uint32_t v = 0; v < count; ++v) {
             CAPTURE(v);
             checkBits(clip, v, transformGrouped(runs, one.patch(), one.run(), stored(v), clip_from_object));
@@ -163,11 +173,10 @@ TEST_CASE("pipeline/transform: a vertex on a plane comes out as if it had been t
     runs.patches[0].run_count = 1;
     run.vertex_count = 1;
     runs.runs = {run};
-    runs.quantised[0].assign(17, static_cast<std::uint16_t>(s));
-    runs.quantised[1].assign(17, static_cast<std::uint16_t>(t));
+    runs.quantised.assign(17, static_cast<std::uint32_t>(s) | static_cast<std::uint32_t>(t) << 16);
     const Mat4 clip_from_object = randomMatrix(rng);
     ClipVertices clip;
-    transformPatch(runs, runs.patches[0], clip_from_object, clip);
+    transformRun(runs, runs.patches[0], run, RunStart(patch), 0, 1, clip_from_object, clip);
     checkBits(clip, 0, transformVertex(position, clip_from_object, run.axis));
   }
 }
@@ -178,7 +187,7 @@ TEST_CASE("pipeline/transform: part of a run is written and nothing beside it") 
   const Mat4 clip_from_object = randomMatrix(rng);
   forEachTarget([&] {
     ClipVertices whole;
-    transformPatch(one.vertices, one.patch(), clip_from_object, whole);
+    transformWhole(one, 100, clip_from_object, whole);
     ClipVertices part;
     std::fill(std::begin(part.x), std::end(part.x), 7.0F);
     transformRun(one.vertices, one.patch(), one.run(), RunStart(one.patch()), 16, 37, clip_from_object, part);
@@ -198,20 +207,20 @@ TEST_CASE("pipeline/transform: half a subpixel goes to the even one on every tar
   forEachTarget([&] {
     ProjectedVertices out;
     projectVertices(clip, 0, 4, viewport, out);
-    CHECK(out.x_fx[0] == 0);
-    CHECK(out.x_fx[1] == 2);
-    CHECK(out.x_fx[2] == 2);
-    CHECK(out.x_fx[3] == 0);
+    CHECK(out[0].x_fx == 0);
+    CHECK(out[1].x_fx == 2);
+    CHECK(out[2].x_fx == 2);
+    CHECK(out[3].x_fx == 0);
   });
 }
 
 TEST_CASE("pipeline/transform: corners of the view volume land on the corners of the picture") {
   const Viewport viewport(640, 480);
-  const ProjectedVertex top_left = projectVertex({-2.0F, 2.0F, 1.0F, 2.0F}, viewport);
+  const raster::ScreenVertex top_left = projectVertex({-2.0F, 2.0F, 1.0F, 2.0F}, viewport);
   CHECK(top_left.x_fx == 0);
   CHECK(top_left.y_fx == 0);
   CHECK(top_left.depth == 0.5F);
-  const ProjectedVertex bottom_right = projectVertex({3.0F, -3.0F, 0.0F, 3.0F}, viewport);
+  const raster::ScreenVertex bottom_right = projectVertex({3.0F, -3.0F, 0.0F, 3.0F}, viewport);
   CHECK(bottom_right.x_fx == 640 * raster::kSubpixels);
   CHECK(bottom_right.y_fx == 480 * raster::kSubpixels);
 }

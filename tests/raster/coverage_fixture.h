@@ -36,10 +36,14 @@ struct TriangleSoup {
   }
   std::size_t size() const { return source.size(); }
 
-  ScreenVertices vertices() const { return {x_fx.data(), y_fx.data(), depth.data(), inv_w.data()}; }
+  std::vector<ScreenVertex> vertices() const {
+    std::vector<ScreenVertex> out;
+    for (std::size_t i = 0; i < x_fx.size(); ++i) out.push_back({x_fx[i], y_fx[i], depth[i], inv_w[i]});
+    return out;
+  }
 };
 
-using SetupFunction = void (*)(const ScreenVertices&, const PatchTriangles&, Binner&, SetupCounts&);
+using SetupFunction = void (*)(const ScreenVertex*, const PatchTriangles&, Binner&, SetupCounts&);
 
 /// A frame of bins.
 struct BinnedFrame {
@@ -62,7 +66,7 @@ struct BinnedFrame {
       soup.corner[i].resize((soup.size() + 15) / 16 * 16 + 16, 0);
       triangles.corner[i] = soup.corner[i].data();
     }
-    setup(soup.vertices(), triangles, binner, counts);
+    setup(soup.vertices().data(), triangles, binner, counts);
   }
 
   /// Number of the triangle seen at each pixel, kNoTriangle where none is.

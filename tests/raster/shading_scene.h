@@ -16,7 +16,7 @@ struct ShadingScene {
 
   struct Attributes {
     std::array<std::vector<float>, 3> position;
-    std::vector<std::uint32_t> normal;
+    std::vector<VertexNormal> normal;
     std::array<std::vector<float>, 2> texcoord;
     std::array<std::vector<std::uint32_t>, 2> color;
   };
@@ -44,8 +44,7 @@ struct ShadingScene {
       for (std::uint32_t i = 0; i < kVertices; ++i) a.position[axis].push_back(uniform(-2, 2));
       s.position_object[axis] = a.position[axis].data();
     }
-    for (std::uint32_t i = 0; i < kVertices; ++i)
-      a.normal.push_back(packNormal(glm::normalize(facing + 0.7F * direction())));
+    for (std::uint32_t i = 0; i < kVertices; ++i) a.normal.push_back(vertexNormal(facing + 0.7F * direction()));
     s.normal = a.normal.data();
     for (std::size_t axis = 0; axis < 2; ++axis) {
       for (std::uint32_t i = 0; i < kVertices; ++i) a.texcoord[axis].push_back(uniform(-2, 2));

@@ -1,0 +1,33 @@
+// bench/experiments/models: the models of scripts/models, and simplified ones.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "mesh/mesh.h"
+
+namespace sheaf::experiments {
+
+class Models {
+ public:
+  explicit Models(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// As the file has it, without made normals; vertices that no face uses are dropped.
+  /// name  cow, bunny, dragon, armadillo, jet, lantern. Throws Error if scripts/models has not fetched it.
+  const mesh::Mesh& whole(const std::string& name);
+  /// Simplified to so many vertices, or as few as topology allows; positions only.
+  const mesh::Mesh& lod(const std::string& name, std::size_t vertices);
+
+ private:
+  std::filesystem::path folder_;
+  std::map<std::pair<std::string, std::size_t>, mesh::Mesh> made_;
+};
+
+/// Median time of a call in ms, after one call that does not count.
+double medianMs(int runs, const std::function<void()>& call);
+
+}  // namespace sheaf::experiments

@@ -1,0 +1,67 @@
+// Face clustering by one thread, from 5,804 faces (as many as the cow has) to 4 million.
+// Counters: peak memory beside the input, and what the hierarchy is like, so that a faster run cannot hide a worse one.
+#include <benchmark/benchmark.h>
+
+#include <map>
+#include <random>
+#include <stdexcept>
+
+#include "bench/grouping/peak_memory.h"
+#include "grouping/face_clusters.h"
+#include "tests/grouping/shapes.h"
+
+namespace sheaf::grouping {
+namespace {
+
+// About this many faces of a lumpy, slightly noisy ball.
+const mesh::Mesh& ball(std::int64_t faces) {
+  static std::map<std::int64_t, mesh::Mesh> made;
+  const auto [entry, is_new] = made.try_emplace(faces);
+  if (is_new) {
+    std::mt19937 rng(0xba11);
+    const auto rings = static_cast<std::uint32_t>(std::sqrt(double(faces) / 2.8));
+    entry->second = lumpyBall(rng, rings, static_cast<std::uint32_t>(faces / 2) / rings, 0.2F / float(rings));
+  }
+  return entry->second;
+}
+
+double meanDepth(const FaceClusters& clusters) {
+  std::vector<std::uint32_t> depth(clusters.nodeCount(), 0);
+  double sum = 0.0;
+  for (std::uint32_t node = clusters.nodeCount(); node-- > 0;) {
+    if (clusters.parent[node] != kNoIndex) depth[node] = depth[clusters.parent[node]] + 1;
+    if (clusters.isFace(node)) sum += depth[node];
+  }
+  return sum / clusters.faceCount();
+}
+
+void cluster(benchmark::State& state) {
+  const mesh::Mesh& mesh = ball(state.range(0));
+  TaskPool pool(1);
+  FaceClusters clusters;
+  std::size_t peak = 0;
+  for (auto _ : state) {
+    clusters = {};
+    bench::resetPeakMemory();
+    clusters = clusterFaces(mesh, {}, pool);
+    peak = bench::peakMemory();
+  }
+  const double faces = clusters.faceCount();
+  state.counters["faces"] = faces;
+  state.counters["mean_depth"] = meanDepth(clusters);
+  state.counters["shapes"] = static_cast<double>(clusters.shapes.size());
+  state.counters["peak_bytes_per_face"] = static_cast<double>(peak) / faces;
+  state.counters["faces_per_second"] = benchmark::Counter(faces, benchmark::Counter::kIsIterationInvariantRate);
+  state.SetComplexityN(static_cast<std::int64_t>(faces));
+}
+
+void sizes(benchmark::internal::Benchmark* b) {
+  b->ArgName("n");
+  for (const std::int64_t n : {5804, 20000, 69451, 250000, 871414, 4000000}) b->Arg(n);
+  b->Unit(benchmark::kMillisecond);
+}
+
+BENCHMARK(cluster)->Name("grouping/cluster")->Apply(sizes)->Complexity(benchmark::oNLogN);
+
+}  // namespace
+}  // namespace sheaf::grouping

@@ -42,7 +42,8 @@ std::vector<float> randomFloats(std::mt19937& rng, std::size_t count) {
 
 OneRun fullRun(std::mt19937& rng, std::uint32_t count) {
   OneRun one(count);
-  one.vertices.full = randomFloats(rng, std::size_t{3} * count);
+  const std::vector<float> floats = randomFloats(rng, std::size_t{3} * count);
+  one.vertices.full.assign(floats.begin(), floats.end());
   return one;
 }
 
@@ -87,7 +88,7 @@ TEST_CASE("pipeline/transform: every SIMD target equals the references, bit for 
       std::int32_t any = 0;
       for (std::uint32_t v = 0; v < count; ++v) {
         CAPTURE(v);
-        const std::vector<float>& full = one.vertices.full;
+        const AlignedVector<float>& full = one.vertices.full;
         const Vec3 position(full[v], full[v + count], full[v + 2 * count]);
         const Vec4 expected = transformVertex(position, clip_from_object);
         checkBits(clip, v, expected);

@@ -60,7 +60,7 @@ struct BenchRequest : SceneRequest {
 BenchRequest understand(const BenchArguments& arguments) {
   BenchRequest request;
   understandScene(arguments, request);
-  request.grouping = understandGrouping(arguments.grouping);
+  request.grouping = understandGrouping(arguments.grouping, pipeline::Grouping::kPlanar);
   const ViewRequest& view = request.view;
   if (arguments.views)
     request.views = understandViews(*arguments.views, view);
@@ -132,7 +132,7 @@ void addBenchCommand(CLI::App& app, Run& run) {
   command->add_flag("--json", a.json, "Everything as JSON, the times of each frame included");
   addReportOption(*command, a.report);
   addPictureOptions(*command, a);
-  addGroupingOptions(*command, a.grouping);
+  addGroupingOptions(*command, a.grouping, pipeline::Grouping::kPlanar);
   addCameraOptions(*command, a);
   command
       ->add_option("--views", a.views,

@@ -51,7 +51,7 @@ std::vector<std::string> beyondInAnyView(const Limits& limits, const pipeline::C
 void addSceneCompareOptions(CLI::App& command, SceneCompareArguments& a) {
   addReportOption(command, a.report);
   addPictureOptions(command, a);
-  addGroupingOptions(command, a.grouping);
+  addGroupingOptions(command, a.grouping, pipeline::Grouping::kPlanar);
   addCameraOptions(command, a);
   command
       .add_option("--views", a.views,
@@ -65,7 +65,7 @@ void addSceneCompareOptions(CLI::App& command, SceneCompareArguments& a) {
 
 void understandSceneCompare(const SceneCompareArguments& arguments, SceneCompareRequest& request) {
   understandScene(arguments, request);
-  request.grouping = understandGrouping(arguments.grouping);
+  request.grouping = understandGrouping(arguments.grouping, pipeline::Grouping::kPlanar);
   request.report = understandReport(arguments.report);
   if (arguments.views) request.views = understandViews(*arguments.views, request.view);
 }

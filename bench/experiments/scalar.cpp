@@ -1,0 +1,189 @@
+// The setting of [PG]: whole meshes transformed by plain C++, one vertex at a time.
+#include <fmt/format.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "bench/experiments/experiment.h"
+#include "bench/experiments/rounds.h"
+#include "bench/experiments/scalar_mesh.h"
+#include "bench/experiments/table.h"
+#include "grouping/groups_file.h"
+#include "grouping/linear_groups.h"
+#include "grouping/planar_groups.h"
+
+namespace sheaf::experiments {
+namespace {
+
+constexpr const char* kScalarVerdict = "";
+
+using grouping::VertexGroups;
+
+constexpr std::array<const char*, kScalarForms> kFormNames = {
+    "(x, y, z, w), 16 products; 4 components rebuilt", "the same, 3 components rebuilt",
+    "w = 1 known, 12 products; 4 components rebuilt", "affine, 9 products; 3 components"};
+
+struct Case {
+  std::string model;
+  std::string method;
+  VertexGroups groups;
+};
+
+std::vector<Case> table1Cases(Context& context) {
+  std::vector<Case> cases;
+  for (const auto& [name, count] : std::vector<std::pair<std::string, std::size_t>>{
+           {"dragon", 600}, {"bunny", 3000}, {"cow", 1000}, {"jet", 300}}) {
+    const mesh::Mesh& mesh = context.models.lod(name, count);
+    const std::string model = fmt::format("{}, {}", name, mesh.vertexCount());
+    cases.push_back({model, "planar", grouping::groupPlanar(mesh, {})});
+    cases.push_back({model, "linear", grouping::groupLinear(mesh, {})});
+  }
+  return cases;
+}
+
+/// A mesh in both forms, with room for the results.
+struct Pair {
+  ScalarArrays full;
+  ScalarArrays grouped;
+  std::vector<float> full_out;
+  std::vector<float> grouped_out;
+
+  explicit Pair(const VertexGroups& groups)
+      : full(ungroupedArrays(groups)),
+        grouped(groupedArrays(groups)),
+        full_out(4 * full.vertexCount()),
+        grouped_out(full_out.size()) {}
+};
+
+// Grouped vertices must come out where the same vertices do when transformed in full.
+void checkEqual(const Pair& pair, std::size_t floats) {
+  for (std::size_t i = 0; i < floats; ++i)
+    if (!(std::abs(pair.full_out[i] - pair.grouped_out[i]) <= 1e-4F * (1.0F + std::abs(pair.full_out[i]))))
+      throw std::runtime_error(fmt::format("component {}: {} in full, {} grouped", i, pair.full_out[i], pair.grouped_out[i]));
+}
+
+struct Times {
+  Spread full;
+  Spread grouped;
+  double saved() const { return 1.0 - grouped.median / full.median; }
+};
+
+// Nanoseconds per vertex, data in the first- and second-level caches.
+Times timeForm(Pair& pair, int form, const ScalarTransform* transforms) {
+  const Mat4 matrix = scalarMatrix(static_cast<ScalarForm>(form));
+  const auto way = [&](const ScalarArrays& arrays, std::vector<float>& out) {
+    return std::function<void()>([&, transform = transforms[form], mesh = arrays.view()] {
+      transform(mesh, &matrix[0][0], out.data());
+    });
+  };
+  const double vertices = static_cast<double>(pair.full.vertexCount());
+  const int calls = std::max(5, static_cast<int>(60'000.0 / vertices));
+  std::vector<Spread> spreads =
+      timeInTurns({way(pair.full, pair.full_out), way(pair.grouped, pair.grouped_out)}, 101, calls, calls);
+  for (Spread& s : spreads) s = {s.median / vertices, s.lower / vertices, s.upper / vertices};
+  checkEqual(pair, pair.full.vertexCount() * (static_cast<ScalarForm>(form) == ScalarForm::kAffine ? 3 : 4));
+  return {spreads[0], spreads[1]};
+}
+
+/// What callgrind counts in one transform.
+struct Counted {
+  double instructions = 0.0;
+  double loads = 0.0;
+  double stores = 0.0;
+};
+
+Counted countForm(const std::filesystem::path& file, const char* way, int form) {
+  const std::string command = fmt::format(
+      "valgrind --tool=callgrind --cache-sim=yes --callgrind-out-file=/dev/null --toggle-collect=countedTransform '{}' "
+      "'{}' {} {} 2>&1",
+      (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "scalar_transform").string(), file.string(), way,
+      form);
+  FILE* const pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) throw std::runtime_error("valgrind cannot be started");
+  Counted counted;
+  std::array<char, 1024> line{};
+  while (std::fgets(line.data(), static_cast<int>(line.size()), pipe) != nullptr) {
+    const std::string_view text(line.data());
+    const std::size_t at = text.find("Collected : ");
+    if (at != std::string_view::npos)
+      std::sscanf(line.data() + at, "Collected : %lf %lf %lf", &counted.instructions, &counted.loads, &counted.stores);
+  }
+  if (pclose(pipe) != 0 || counted.instructions == 0.0)
+    throw std::runtime_error("valgrind (Debian package valgrind) did not count: " + command);
+  return counted;
+}
+
+// Where the savings come from: both sides per vertex, and what is saved of each.
+std::string countInstructions(const std::vector<Case>& cases) {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "sheaf-scalar.sheaf";
+  Table totals({"model", "eliminated %", kFormNames[0], kFormNames[1], kFormNames[2], kFormNames[3]});
+  Table causes({"model", "instructions", "multiplications", "additions", "loads", "stores"});
+  for (const Case& c : cases) {
+    grouping::saveGroups(file, c.groups);
+    std::vector<std::string> cells = {c.model + ", " + c.method, percent(c.groups.stats.eliminated)};
+    const Pair pair(c.groups);
+    for (int form = 0; form < kScalarForms; ++form) {
+      const Counted full = countForm(file, "none", form), grouped = countForm(file, "grouped", form);
+      cells.push_back(percent(1.0 - grouped.instructions / full.instructions));
+      if (static_cast<ScalarForm>(form) != ScalarForm::kRebuild3) continue;
+      const double n = static_cast<double>(pair.full.vertexCount());
+      const Arithmetic all = arithmeticOf(pair.full.view(), ScalarForm::kRebuild3);
+      const Arithmetic some = arithmeticOf(pair.grouped.view(), ScalarForm::kRebuild3);
+      const auto cell = [&](double before, double after) {
+        return fmt::format("{:.1f} to {:.1f}, {} %", before / n, after / n, percent(1.0 - after / before, 0));
+      };
+      causes.add({c.model + ", " + c.method, cell(full.instructions, grouped.instructions),
+                  cell(double(all.multiplications), double(some.multiplications)),
+                  cell(double(all.additions), double(some.additions)), cell(full.loads, grouped.loads),
+                  cell(full.stores, grouped.stores)});
+    }
+    totals.add(cells);
+  }
+  std::filesystem::remove(file);
+  return "Instructions saved, percent, as callgrind counts them (SSE2 scalar code):\n\n" + totals.text() +
+         "By cause, per vertex, where three components are rebuilt. Loads include those that are part of a "
+         "multiplication, so the parts do not add up to all instructions; moves between registers and loops are "
+         "the rest:\n\n" +
+         causes.text();
+}
+
+std::string timeTransforms(const std::vector<Case>& cases, const ScalarTransform* transforms, const std::string& name) {
+  Table table({"model", kFormNames[0], kFormNames[1], kFormNames[2], kFormNames[3]});
+  for (const Case& c : cases) {
+    Pair pair(c.groups);
+    std::vector<std::string> cells = {c.model + ", " + c.method};
+    for (int form = 0; form < kScalarForms; ++form) {
+      const Times t = timeForm(pair, form, transforms);
+      cells.push_back(fmt::format("{} % ({:.2f} [{:.2f}, {:.2f}] to {:.2f} [{:.2f}, {:.2f}])", percent(t.saved()),
+                                  t.full.median, t.full.lower, t.full.upper, t.grouped.median, t.grouped.lower,
+                                  t.grouped.upper));
+    }
+    table.add(cells);
+  }
+  return fmt::format("Time saved, {} (nanoseconds per vertex, medians and quartiles of 101 rounds in turns):\n\n{}", name,
+                     table.text());
+}
+
+}  // namespace
+
+std::string writeScalar(Context& context) {
+  const std::vector<Case> cases = table1Cases(context);
+  std::string text = fmt::format(
+      "The whole mesh transformed by C++ without vectors (`-fno-tree-vectorize -fno-tree-slp-vectorize`), each side "
+      "compiled alike, vertices renumbered by group so that both sides write in order; caches warm. Epsilon is 0.5 %. "
+      "*Full* is what every vertex costs without groups. Machine: {}.\n\n",
+      machineText());
+  text += countInstructions(cases);
+  text += timeTransforms(cases, sse2::kTransforms, "SSE2 scalar instructions");
+  if (__builtin_cpu_supports("fma") != 0)
+    text += timeTransforms(cases, fma::kTransforms, "the same with fused multiply-add and AVX's three operands");
+  return text + kScalarVerdict;
+}
+
+}  // namespace sheaf::experiments

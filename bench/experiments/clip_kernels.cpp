@@ -17,8 +17,12 @@ inline void heights(const Float4& p, float (&h)[kPlanes]) {
   h[0] = p.w + p.x, h[1] = p.w - p.x, h[2] = p.w + p.y, h[3] = p.w - p.y, h[4] = p.w + p.z, h[5] = p.w - p.z;
 }
 
-inline float least(float a, float b) { return a < b ? a : b; }
-inline float greatest(float a, float b) { return a > b ? a : b; }
+inline float least(float a, float b) {
+  return a < b ? a : b;
+}
+inline float greatest(float a, float b) {
+  return a > b ? a : b;
+}
 
 inline Float4 along(const Float4& a, const Float4& b, float s) {
   return {a.x + s * (b.x - a.x), a.y + s * (b.y - a.y), a.z + s * (b.z - a.z), a.w + s * (b.w - a.w)};

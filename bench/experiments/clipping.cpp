@@ -82,7 +82,7 @@ std::uint64_t wrongCodes(const std::vector<Float4>& clip, const std::vector<std:
 }
 
 struct Result {
-  double saved = 0.0;       // operations
+  double saved = 0.0;         // operations
   double saved_partly = 0.0;  // the mean over cameras that see some vertices and not others
   double saved_time = 0.0;
   double accepted = 0.0, rejected = 0.0;  // of groups
@@ -115,9 +115,7 @@ Result measureCodes(const VertexGroups& groups) {
     const int calls = n > 10'000 ? 2 : 20;
     const std::vector<Spread> times = timeInTurns(
         {[&] { codeVertices(clip.data(), n, exact.data()); },
-         [&] {
-           codeByGroup(mesh, ranges.planes.data(), ranges.lines.data(), m, clip.data(), coded.data(), counts);
-         }},
+         [&] { codeByGroup(mesh, ranges.planes.data(), ranges.lines.data(), m, clip.data(), coded.data(), counts); }},
         7, calls, 1);
     exact_ns += times[0].median;
     grouped_ns += times[1].median;
@@ -130,8 +128,8 @@ Result measureCodes(const VertexGroups& groups) {
 }  // namespace
 
 std::string writeClipping(Context& context) {
-  Table table({"model", "groups", "members per group", "tests saved %", "partly in view: cameras", "tests saved there %",
-               "groups accepted %", "rejected %", "time saved %"});
+  Table table({"model", "groups", "members per group", "tests saved %", "partly in view: cameras",
+               "tests saved there %", "groups accepted %", "rejected %", "time saved %"});
   for (const auto& [name, count] : std::vector<std::pair<std::string, std::size_t>>{
            {"dragon", 600}, {"bunny", 3000}, {"cow", 1000}, {"jet", 300}, {"bunny", 0}}) {
     const mesh::Mesh& mesh = count == 0 ? context.models.whole(name) : context.models.lod(name, count);

@@ -52,6 +52,7 @@ std::string writeStorage(Context& context);
 std::string writeBeyond(Context& context);
 // scalar.cpp, clipping.cpp, texcoords.cpp
 std::string writeScalar(Context& context);
+std::string writeScalarTimes(Context& context);
 std::string writeClipping(Context& context);
 std::string writeTexcoordTransforms(Context& context);
 // stage.cpp

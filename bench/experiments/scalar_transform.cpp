@@ -1,5 +1,5 @@
-// scalar_transform FILE.sheaf none|grouped FORM: transforms the vertices of a groups file once, by scalar_kernels.h, for
-// callgrind to count. FORM is a number, see ScalarForm.
+// scalar_transform FILE.sheaf none|grouped FORM: transforms the vertices of a groups file once, by scalar_kernels.h,
+// for callgrind to count. FORM is a number, see ScalarForm.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>

@@ -7,7 +7,7 @@ namespace {
 void transform(const float* __restrict u, const float* __restrict v, std::uint32_t count, const TextureMatrix& matrix,
                TexcoordsOut out) {
   const float a = matrix[0], b = matrix[1], c = matrix[2], d = matrix[3], e = matrix[4], f = matrix[5];
-  float *__restrict out_u = out.u, *__restrict out_v = out.v;
+  float* __restrict out_u = out.u, * __restrict out_v = out.v;
   for (std::uint32_t i = 0; i < count; ++i) {
     out_u[i] = a * u[i] + b * v[i] + c;
     out_v[i] = d * u[i] + e * v[i] + f;
@@ -22,7 +22,7 @@ void transformLines(const ScalarLine* lines, std::uint32_t line_count, const flo
     const float u = out.u[line.origin], v = out.v[line.origin];
     const float du = out.u[line.end] - u, dv = out.v[line.end] - v;
     const float* __restrict s = parameters;
-    float *__restrict out_u = out.u + first, *__restrict out_v = out.v + first;
+    float* __restrict out_u = out.u + first, * __restrict out_v = out.v + first;
     for (std::uint32_t i = 0; i < line.count; ++i) {
       out_u[i] = u + s[i] * du;
       out_v[i] = v + s[i] * dv;
@@ -33,8 +33,8 @@ void transformLines(const ScalarLine* lines, std::uint32_t line_count, const flo
 }
 
 void generate(const float* const (&xyz)[3], std::uint32_t count, const TextureRows& rows, TexcoordsOut out) {
-  const float *__restrict x = xyz[0], *__restrict y = xyz[1], *__restrict z = xyz[2];
-  float *__restrict out_u = out.u, *__restrict out_v = out.v;
+  const float* __restrict x = xyz[0], * __restrict y = xyz[1], * __restrict z = xyz[2];
+  float* __restrict out_u = out.u, * __restrict out_v = out.v;
   const float a = rows[0], b = rows[1], c = rows[2], d = rows[3], e = rows[4], f = rows[5], g = rows[6], h = rows[7];
   for (std::uint32_t i = 0; i < count; ++i) {
     out_u[i] = a * x[i] + b * y[i] + c * z[i] + d;
@@ -50,8 +50,8 @@ void generatePlanes(const ScalarPlane* planes, std::uint32_t plane_count, const 
     const float u = out.u[plane.origin], v = out.v[plane.origin];
     const float us = rows[plane.axis_s], ut = rows[plane.axis_t];
     const float vs = rows[4 + plane.axis_s], vt = rows[4 + plane.axis_t];
-    const float *__restrict at_s = s, *__restrict at_t = t;
-    float *__restrict out_u = out.u + first, *__restrict out_v = out.v + first;
+    const float* __restrict at_s = s, * __restrict at_t = t;
+    float* __restrict out_u = out.u + first, * __restrict out_v = out.v + first;
     for (std::uint32_t i = 0; i < plane.count; ++i) {
       out_u[i] = u + at_s[i] * us + at_t[i] * ut;
       out_v[i] = v + at_s[i] * vs + at_t[i] * vt;

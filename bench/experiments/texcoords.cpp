@@ -67,14 +67,14 @@ void addTransform(Table& table, const std::string& name, const VertexGroups& gro
   const Columns retained(arrays.retained3);
   const auto count = static_cast<std::uint32_t>(all.x.size()), kept = static_cast<std::uint32_t>(retained.x.size());
   Texcoords full(count), grouped(count);
-  const std::vector<Spread> times = timeBoth(
-      [&] { kernels.transform(all.x.data(), all.y.data(), count, kMatrix, full.out()); },
-      [&] {
-        kernels.transform(retained.x.data(), retained.y.data(), kept, kMatrix, grouped.out());
-        kernels.transformLines(arrays.lines.data(), static_cast<std::uint32_t>(arrays.lines.size()),
-                               arrays.line_parameters.data(), kept, grouped.out());
-      },
-      count);
+  const std::vector<Spread> times =
+      timeBoth([&] { kernels.transform(all.x.data(), all.y.data(), count, kMatrix, full.out()); },
+               [&] {
+                 kernels.transform(retained.x.data(), retained.y.data(), kept, kMatrix, grouped.out());
+                 kernels.transformLines(arrays.lines.data(), static_cast<std::uint32_t>(arrays.lines.size()),
+                                        arrays.line_parameters.data(), kept, grouped.out());
+               },
+               count);
   checkEqual(full, grouped);
   addRow(table, name, groups, times, count);
 }
@@ -90,7 +90,9 @@ void addGeneration(Table& table, const std::string& name, const VertexGroups& gr
   const auto count = static_cast<std::uint32_t>(all.x.size()), kept = static_cast<std::uint32_t>(retained.x.size());
   Texcoords full(count), grouped(count);
   const std::vector<Spread> times = timeBoth(
-      [&] { kernels.generate({all.x.data(), all.y.data(), all.z.data()}, count, rows, full.out()); },
+      [&] {
+        kernels.generate({all.x.data(), all.y.data(), all.z.data()}, count, rows, full.out());
+      },
       [&] {
         kernels.generate({retained.x.data(), retained.y.data(), retained.z.data()}, kept, rows, grouped.out());
         kernels.generatePlanes(arrays.planes.data(), static_cast<std::uint32_t>(arrays.planes.size()), s.data(),
@@ -106,15 +108,16 @@ mesh::Mesh gridOfTexcoords(int side) {
   mesh::Mesh mesh;
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x)
-      mesh.positions.emplace_back(static_cast<float>(x) / float(side - 1), static_cast<float>(y) / float(side - 1), 0.0F);
+      mesh.positions.emplace_back(static_cast<float>(x) / float(side - 1), static_cast<float>(y) / float(side - 1),
+                                  0.0F);
   return mesh;
 }
 
 }  // namespace
 
 std::string writeTexcoordTransforms(Context& context) {
-  const std::vector<std::string> head = {"what", "eliminated %", "members per group", "in full, ns", "grouped, ns",
-                                         "times as fast"};
+  const std::vector<std::string> head = {"what",        "eliminated %", "members per group",
+                                         "in full, ns", "grouped, ns",  "times as fast"};
   grouping::LinearOptions flat;
   flat.dimensions = 2;
   const VertexGroups lantern = grouping::groupLinear(grouping::texcoordMesh(context.models.whole("lantern")), flat);
@@ -143,7 +146,8 @@ std::string writeTexcoordTransforms(Context& context) {
              "Times per vertex, medians and quartiles of 51 rounds in turns; results are checked against the full "
              "computation. Machine: {}. sheaf itself applies a texture matrix to each shaded pixel and never to "
              "vertices, so its frames gain nothing here.\n\n"
-             "**An affine texture matrix**: in full 4 multiplications and 4 additions, on a line 2 and 2; linear groups in "
+             "**An affine texture matrix**: in full 4 multiplications and 4 additions, on a line 2 and 2; linear "
+             "groups in "
              "two dimensions, epsilon 0.5 %.\n\n",
              machineText()) +
          transformed.text() +

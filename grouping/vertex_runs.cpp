@@ -66,10 +66,7 @@ class PatchSorter {
                                                      : kind == RunKind::kLine && min_plane_run_ > kMaxVertices;
       for (std::uint32_t i = begin; too_short && i < end; ++i) short_ones[short_count++] = order_[i];
     });
-    for (std::size_t i = 0; i < short_count; ++i) {
-      VertexPlace& place = places_[short_ones[i]];
-      place = {.kind = RunKind::kFull, .axis = place.axis};
-    }
+    for (std::size_t i = 0; i < short_count; ++i) places_[short_ones[i]] = {};
     if (short_count > 0) sortLocals(count);
   }
 
@@ -171,7 +168,6 @@ class PatchFiller {
     if (out_.form == ParameterForm::k16Bit) findCorner(at, vertex_count);
     corner_ = at.corner;
     full_ = at.first_full;
-    full_stride_ = at.full_stride;
     parameter_ = at.first_parameter;
     const std::uint32_t* next = source_;
     for (std::uint32_t r = at.first_run; r < at.first_run + at.run_count; ++r) {
@@ -203,7 +199,8 @@ class PatchFiller {
   }
 
   void storeFull(std::uint32_t v) {
-    for (std::size_t k = 0; k < 3; ++k) out_.full[full_ + k * full_stride_] = placed_.positions[v][static_cast<int>(k)];
+    for (std::size_t k = 0; k < 3; ++k)
+      out_.full[full_ + k * out_.full_stride] = placed_.positions[v][static_cast<int>(k)];
     ++full_;
   }
 
@@ -231,21 +228,20 @@ class PatchFiller {
   const std::uint32_t* source_;
   VertexRuns& out_;
   std::array<std::int32_t, 3> corner_{};
-  std::size_t full_ = 0, full_stride_ = 0, parameter_ = 0;
+  std::size_t full_ = 0, parameter_ = 0;
 };
 
 // x, y, z of every slot, padding included.
 void fillBySlot(std::span<const Vec3> positions, const PatchSet& set, TaskPool& pool, VertexRuns& out) {
-  const auto stride = static_cast<std::uint32_t>(set.vertex_source.size());
-  out.full.resize(std::size_t{3} * stride + kRunAlignment);
+  out.full_stride = set.vertex_source.size();
+  out.full.resize(3 * out.full_stride + kRunAlignment);
   forPatches(set.patches.size(), pool, [&](std::size_t p) {
     const std::uint32_t begin = set.patches[p].first_vertex;
     out.patches[p].first_full = begin;
-    out.patches[p].full_stride = stride;
     const std::uint32_t end = begin + alignedCount(set.patches[p].vertex_count);
     for (std::uint32_t slot = begin; slot < end; ++slot)
       for (std::size_t k = 0; k < 3; ++k)
-        out.full[slot + k * stride] = positions[set.vertex_source[slot]][static_cast<int>(k)];
+        out.full[slot + k * out.full_stride] = positions[set.vertex_source[slot]][static_cast<int>(k)];
   });
 }
 
@@ -259,12 +255,12 @@ bool joinRuns(const std::vector<std::vector<VertexRun>>& runs, VertexRuns& out) 
     at.run_count = static_cast<std::uint32_t>(runs[p].size());
     at.first_full = full;
     at.first_parameter = parameters;
-    for (const VertexRun& run : runs[p]) (run.kind == RunKind::kFull ? at.full_stride : parameters) += run.vertex_count;
-    full += 3 * at.full_stride;
+    for (const VertexRun& run : runs[p]) (run.kind == RunKind::kFull ? full : parameters) += run.vertex_count;
     out.runs.insert(out.runs.end(), runs[p].begin(), runs[p].end());
   }
   if (parameters == 0) return true;
-  out.full.resize(std::size_t{full} + kRunAlignment);
+  out.full_stride = full;
+  out.full.resize(3 * out.full_stride + kRunAlignment);
   if (out.form == ParameterForm::k16Bit)
     out.quantised.resize(std::size_t{parameters} + kRunAlignment);
   else

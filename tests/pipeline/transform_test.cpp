@@ -27,7 +27,7 @@ struct OneRun {
     vertices.patches[0].run_count = 1;
     vertices.runs.resize(1);
     vertices.runs[0].vertex_count = static_cast<std::uint16_t>(count);
-    vertices.patches[0].full_stride = count;
+    vertices.full_stride = count;
   }
   grouping::PatchRuns& patch() { return vertices.patches[0]; }
   grouping::VertexRun& run() { return vertices.runs[0]; }
@@ -40,9 +40,8 @@ std::vector<float> randomFloats(std::mt19937& rng, std::size_t count) {
   return values;
 }
 
-OneRun fullRun(std::mt19937& rng, std::uint32_t count, std::uint8_t axis) {
+OneRun fullRun(std::mt19937& rng, std::uint32_t count) {
   OneRun one(count);
-  one.run().axis = axis;
   one.vertices.full = randomFloats(rng, std::size_t{3} * count);
   return one;
 }
@@ -73,7 +72,7 @@ TEST_CASE("pipeline/transform: every SIMD target equals the references, bit for 
   const Viewport viewport(131, 97);
   for (const std::uint32_t count : {1U, 3U, 15U, 16U, 17U, 100U, 256U}) {
     CAPTURE(count);
-    OneRun one = fullRun(rng, count, static_cast<std::uint8_t>(count % 3));
+    OneRun one = fullRun(rng, count);
     const Mat4 clip_from_object = randomMatrix(rng);
     forEachTarget([&] {
       ClipVertices clip;
@@ -90,7 +89,7 @@ TEST_CASE("pipeline/transform: every SIMD target equals the references, bit for 
         CAPTURE(v);
         const std::vector<float>& full = one.vertices.full;
         const Vec3 position(full[v], full[v + count], full[v + 2 * count]);
-        const Vec4 expected = transformVertex(position, clip_from_object, one.run().axis);
+        const Vec4 expected = transformVertex(position, clip_from_object);
         checkBits(clip, v, expected);
         CHECK(codes[v] == outcodeVertex(expected, viewport));
         all &= codes[v];
@@ -177,13 +176,13 @@ TEST_CASE("pipeline/transform: a vertex on a plane comes out as if it had been t
     const Mat4 clip_from_object = randomMatrix(rng);
     ClipVertices clip;
     transformRun(runs, runs.patches[0], run, RunStart(patch), 0, 1, clip_from_object, clip);
-    checkBits(clip, 0, transformVertex(position, clip_from_object, run.axis));
+    checkBits(clip, 0, transformVertex(position, clip_from_object));
   }
 }
 
 TEST_CASE("pipeline/transform: part of a run is written and nothing beside it") {
   std::mt19937 rng(79);
-  OneRun one = fullRun(rng, 100, 0);
+  OneRun one = fullRun(rng, 100);
   const Mat4 clip_from_object = randomMatrix(rng);
   forEachTarget([&] {
     ClipVertices whole;

@@ -56,7 +56,7 @@ std::string writeScalarTimes(Context& context);
 std::string writeClipping(Context& context);
 std::string writeTexcoordTransforms(Context& context);
 // stage.cpp
-std::string writeStage(Context& context);
+std::string writeKernels(Context& context);
 std::string writeLarge(Context& context);
 std::string writeSweep(Context& context);
 std::string writeVisible(Context& context);

@@ -30,7 +30,7 @@ const std::vector<Section>& sections() {
       {"scalar", "Transforms without vectors: instructions", writeScalar},
       {"scalar-times", "Transforms without vectors: time", writeScalarTimes},
       {"clipping", "Clipping by group without vectors", writeClipping},
-      {"kernels", "What bounds the vector kernels", writeStage},
+      {"kernels", "What bounds the vector kernels", writeKernels},
       {"large", "Transform and clipping of large meshes", writeLarge},
       {"sweep", "Transform and clipping from 300 vertices up", writeSweep},
       {"visible", "A part of the mesh in view", writeVisible},

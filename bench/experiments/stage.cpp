@@ -220,7 +220,7 @@ void addKernelRow(const std::string& name, const PreparedScene& scene, Table& ta
 
 }  // namespace
 
-std::string writeStage(Context& context) {
+std::string writeKernels(Context& context) {
   Table kernels({"terrain", "cached, to clip space", "cached, to the screen", "from memory, to clip space",
                  "from memory, to the screen", "memory only read"});
   {
@@ -259,17 +259,17 @@ std::string writeLarge(Context& context) {
 
 std::string writeSweep(Context& context) {
   Table sweep(kStageHead);
-  for (const Load& load : std::vector<Load>{{"cow", 300, 400},
-                                            {"jet", 300, 400},
-                                            {"cow", 1000, 300},
-                                            {"bunny", 3000, 300},
-                                            {"bunny", 10000, 200},
-                                            {"bunny", 0, 100},
-                                            {"armadillo", 0, 60},
-                                            {"dragon", 0, 40},
-                                            {"builtin:teapot", 0, 200},
-                                            {"builtin:terrain?n=256", 0, 80},
-                                            {"builtin:sphere?n=289", 0, 40}})
+  for (const Load& load : std::vector<Load>{{"cow", 300, 100},
+                                            {"jet", 300, 100},
+                                            {"cow", 1000, 100},
+                                            {"bunny", 3000, 100},
+                                            {"bunny", 10000, 80},
+                                            {"bunny", 0, 60},
+                                            {"armadillo", 0, 30},
+                                            {"dragon", 0, 20},
+                                            {"builtin:teapot", 0, 60},
+                                            {"builtin:terrain?n=256", 0, 40},
+                                            {"builtin:sphere?n=289", 0, 15}})
     addStageRows(context, load, ParameterForm::k16Bit, sweep);
   return fmt::format("As above, 16-bit parameters, small meshes too. Machine: {}.\n\n", machineText()) + sweep.text() +
          kSweepVerdict;
@@ -328,12 +328,12 @@ std::string writeFrames(Context& context) {
     path.elevation_rad = radians(20.0);
     path.aspect = kAspect;
     const std::vector<scenes::Camera> cameras = scenes::orbitPath(scene, 4, path);
-    const std::vector<Frames> f = drawInTurns({&original, &snapped, &grouped}, cameras, 40, context.pool);
+    const std::vector<Frames> f = drawInTurns({&original, &snapped, &grouped}, cameras, 20, context.pool);
     const auto gain = [&](std::size_t way) { return percent(f[way].frame.median / f[2].frame.median - 1.0); };
     table.add({name, spreadText(f[0].frame), spreadText(f[1].frame), spreadText(f[2].frame), gain(1), gain(0)});
   }
   return fmt::format(
-             "Whole frames of 1920x1080, one thread, an orbit of 4 cameras, medians and quartiles of 40 frames in "
+             "Whole frames of 1920x1080, one thread, an orbit of 4 cameras, medians and quartiles of 20 frames in "
              "turns. "
              "Machine: {}.\n\n",
              machineText()) +

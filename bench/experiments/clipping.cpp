@@ -60,7 +60,7 @@ struct Ranges {
   std::vector<ScalarRange> lines;
 
   explicit Ranges(const VertexGroups& groups) {
-    for (const grouping::VertexGroup& g : groupsByLength(groups))
+    for (const grouping::VertexGroup& g : groups.groups)
       (g.kind == grouping::GroupKind::kPlane ? planes : lines).push_back({g.s_min, g.s_max, g.t_min, g.t_max});
   }
 };

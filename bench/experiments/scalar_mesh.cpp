@@ -1,6 +1,5 @@
 #include "bench/experiments/scalar_mesh.h"
 
-#include <algorithm>
 #include <array>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -37,13 +36,6 @@ ScalarMesh ScalarArrays::view() const {
           .line_parameters = line_parameters.data()};
 }
 
-std::vector<grouping::VertexGroup> groupsByLength(const VertexGroups& groups) {
-  std::vector<grouping::VertexGroup> sorted = groups.groups;
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const auto& a, const auto& b) { return a.member_count < b.member_count; });
-  return sorted;
-}
-
 ScalarArrays groupedArrays(const VertexGroups& groups) {
   ScalarArrays to;
   std::vector<std::uint32_t> number(groups.state.size(), 0);
@@ -52,7 +44,7 @@ ScalarArrays groupedArrays(const VertexGroups& groups) {
       number[v] = static_cast<std::uint32_t>(to.retained4.size());
       addRetained(groups.positions[v], to);
     }
-  for (const grouping::VertexGroup& g : groupsByLength(groups)) {
+  for (const grouping::VertexGroup& g : groups.groups) {
     const std::uint32_t last = g.first_member + g.member_count;
     if (g.kind == grouping::GroupKind::kPlane) {
       to.planes.push_back({number[g.origin], axisOf(g.axis_s), axisOf(g.axis_t), g.member_count});
@@ -69,9 +61,7 @@ ScalarArrays ungroupedArrays(const VertexGroups& groups) {
   ScalarArrays to;
   for (std::size_t v = 0; v < groups.state.size(); ++v)
     if (isRetained(groups.state[v])) addRetained(groups.positions[v], to);
-  for (const grouping::VertexGroup& g : groupsByLength(groups))
-    for (std::uint32_t i = g.first_member; i < g.first_member + g.member_count; ++i)
-      addRetained(groups.positions[groups.members[i]], to);
+  for (const std::uint32_t v : groups.members) addRetained(groups.positions[v], to);
   return to;
 }
 

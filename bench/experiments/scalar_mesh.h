@@ -23,10 +23,6 @@ struct ScalarArrays {
   std::size_t vertexCount() const { return retained4.size() + plane_parameters.size() + line_parameters.size(); }
 };
 
-/// In the order of the arrays below: those of equal length together, so that the ends of the loops over their members
-/// are predicted.
-std::vector<grouping::VertexGroup> groupsByLength(const grouping::VertexGroups& groups);
-
 /// groups  with axis planes, or lines; no vertex may have been moved away from its group
 ScalarArrays groupedArrays(const grouping::VertexGroups& groups);
 /// The same vertices at the same places in the same order, all retained.

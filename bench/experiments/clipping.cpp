@@ -18,7 +18,12 @@
 namespace sheaf::experiments {
 namespace {
 
-constexpr const char* kClippingVerdict = "";
+constexpr const char* kClippingVerdict =
+    "[PG] says that linear groups reduce the overhead of clipping by about 32 %. **Reproduced as a count**: lines "
+    "save 31 % of the tests on average over the four models of Table 1 (17 to 44 %), segments 47 %, both more on "
+    "the dense bunny. Planar groups save less, 14 to 35 %: their rectangles are large, so fewer of them lie on "
+    "one side of a plane. **Not reproduced as time**: a test is one addition and one comparison today, and what "
+    "it takes to test a group costs more than it saves where groups have two or three members.\n\n";
 
 using grouping::VertexGroups;
 

@@ -21,8 +21,22 @@
 namespace sheaf::experiments {
 namespace {
 
-constexpr const char* kCountVerdict = "";
-constexpr const char* kTimeVerdict = "";
+constexpr const char* kCountVerdict =
+    "[PG] says 65 % for planar groups and 50 % for linear ones. **60 % is not reached by any count of "
+    "instructions**: planar groups save 46 % at best, linear ones 37 %. Of the causes only multiplications fall "
+    "by 60 %; additions fall by half, loads by 58 to 69 %, and stores not at all, for every vertex is written "
+    "either way. A member needs 22 instructions at least (2 loads, 6 multiplications, 6 additions, 4 copies of "
+    "registers, 4 stores) where a full transform has 53, so that even a mesh that is all members, in loops that "
+    "cost nothing, would save 58 %. If w = 1 is not multiplied, as no careful code of any year would, planar "
+    "groups save 24 % and, with affine matrices, 22 %.\n\n";
+constexpr const char* kTimeVerdict =
+    "**60 % is not reached in time either**: planar groups save 52 to 56 % where three components are rebuilt and "
+    "41 to 44 % where four are, linear ones 36 to 44 % and 35 to 42 %. Time follows multiplications more than "
+    "instructions: 6 in place of 16 would leave 0.375, or a saving of 61 % at 97 % eliminated, if they alone took "
+    "time; the ends of short groups and the other instructions take the rest. *Fused multiply-add* leaves these "
+    "shares as they are (51 to 56 %), but against the better full transforms little remains: 20 to 27 % of 12 "
+    "products, 12 to 16 % of an affine matrix. 65 % needs a machine or a program on which a full transform costs "
+    "more than its arithmetic.\n\n";
 
 using grouping::VertexGroups;
 

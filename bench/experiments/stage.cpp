@@ -20,10 +20,24 @@
 namespace sheaf::experiments {
 namespace {
 
-constexpr const char* kKernelVerdict = "";
+constexpr const char* kKernelVerdict =
+    "*Vectors.* To clip space a vertex on a plane costs 0.7 of a full one, not 0.45 as without vectors. *Stores "
+    "and projection* are the larger part: to the screen, with a division and vertices stored whole for the "
+    "set-up, costs 0.2 ns more for full vertices and 0.3 ns for grouped ones, whose runs do not fill the last "
+    "vector and begin anywhere in a cache line: what groups save before, they lose here. *Bandwidth*: reading 12 "
+    "bytes takes 0.33 ns and 4 bytes 0.15, but that hides behind the arithmetic: from memory the full transform "
+    "to the screen is only a tenth slower than from caches. One thread is bound by the stores and shuffles of "
+    "projected vertices. *Clock*: two tenths of what a patch of 256 vertices costs.\n\n";
 constexpr const char* kLargeVerdict = "";
 constexpr const char* kSweepVerdict = "";
-constexpr const char* kVisibleVerdict = "";
+constexpr const char* kVisibleVerdict =
+    "**Neither bound is met.** At 10 % in view grouped drawing takes 1.4 to 1.7 times less than classic for the "
+    "whole geometry stage, not 5 times: setting up the triangles in view, the same for all, is most of it "
+    "(transform and clip together: 4 to 5.5 times on the large meshes). Against modern it gains only on the "
+    "terrain with 5 % in view (1.39 times), where groups drop triangles before set-up, is even at 10 %, and "
+    "**loses 10 to 25 % on the scanned models**: patches that reach over the edges of the picture have their "
+    "groups tested and their triangles sorted, and set-up gets them in shorter pieces, which costs more than it "
+    "saves.\n\n";
 constexpr const char* kFramesVerdict = "";
 
 using pipeline::Grouping;

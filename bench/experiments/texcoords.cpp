@@ -16,7 +16,11 @@
 namespace sheaf::experiments {
 namespace {
 
-constexpr const char* kTexcoordVerdict = "";
+constexpr const char* kTexcoordVerdict =
+    "Without vectors groups pay: 1.4 to 1.5 times as fast by a matrix, 1.3 to 1.4 times for generated "
+    "coordinates. With vectors they pay only where groups are long against a vector: on the whole bunny and the "
+    "dragon, 1.4 times. In short groups the start of the loop and its last, partly filled vector cost more than "
+    "the whole computation: a third to three quarters of the speed.\n\n";
 
 using grouping::VertexGroups;
 

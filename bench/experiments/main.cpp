@@ -5,15 +5,26 @@
 #include <exception>
 #include <stdexcept>
 #include <string_view>
+#include <thread>
 
 #include "bench/experiments/experiment.h"
+#include "cli/build_info.h"
 #include "core/file.h"
 #include "raster/image_io.h"
 
 namespace sheaf::experiments {
+namespace {
+
+std::string writeMachine(Context&) {
+  return fmt::format("{}, {} processors; {}.\n\n", cli::cpuModel(), std::thread::hardware_concurrency(),
+                     cli::buildText());
+}
+
+}  // namespace
 
 const std::vector<Section>& sections() {
   static const std::vector<Section> all = {
+      {"machine", "Machine", writeMachine},
       {"models", "Models", writeModels},
       {"table1", "Table 1: vertices eliminated and time", writeTable1},
       {"figure7", "Figure 7: elimination and vertex count", writeFigure7},

@@ -3,14 +3,18 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "cli/bench_page.h"
 #include "cli/bench_report.h"
 #include "cli/build_info.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/grouping_options.h"
+#include "cli/html_page.h"
+#include "cli/output.h"
 #include "cli/scene_options.h"
 #include "cli/views.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "scenes/camera.h"
 
 namespace sheaf::cli {
@@ -31,7 +35,7 @@ constexpr const char* kFooter =
     "orthographic_height.\n"
     "\n"
     "Examples:\n"
-    "  sheaf bench builtin:terrain\n"
+    "  sheaf bench builtin:terrain --report terrain.html\n"
     "  sheaf bench bunny.ply --views inside --threads 1 --size 1920x1080\n"
     "  sheaf bench model.glb --views fly --frames 200 --json > model.json\n"
     "\n";
@@ -41,6 +45,7 @@ struct BenchArguments : SceneArguments {
   GroupingArguments grouping;
   Text views;
   Text frames;
+  Text report;
   bool json = false;
 };
 
@@ -48,19 +53,21 @@ struct BenchRequest : SceneRequest {
   pipeline::GroupingOptions grouping;
   ViewsRequest views;
   int frames = kDefaultFrames;
+  std::string report;  ///< HTML; empty: not written
   bool json = false;
 };
 
 BenchRequest understand(const BenchArguments& arguments) {
   BenchRequest request;
   understandScene(arguments, request);
-  request.grouping = understandGrouping(arguments.grouping);
+  request.grouping = understandGrouping(arguments.grouping, pipeline::Grouping::kPlanar);
   const ViewRequest& view = request.view;
   if (arguments.views)
     request.views = understandViews(*arguments.views, view);
   else if (!view.named && !view.eye && !view.file_camera)
     request.views.kind = Views::kOrbit;
   if (arguments.frames) request.frames = static_cast<int>(parseWhole("--frames", *arguments.frames, 1, kMaxFrames));
+  request.report = understandReport(arguments.report);
   request.json = arguments.json;
   return request;
 }
@@ -96,6 +103,7 @@ BenchReport measure(const BenchRequest& request, const scenes::Scene& scene, con
 }
 
 int runBench(const BenchRequest& request) {
+  checkOutputs({{"--report", request.report}}, inputFiles(request));
   if (request.simd) forceSimdTarget(*request.simd);
   TaskPool pool(request.threads);
   scenes::Scene scene = importScene(request);
@@ -104,6 +112,7 @@ int runBench(const BenchRequest& request) {
   BenchReport report = measure(request, scene, rows, pool);
   report.warnings.insert(report.warnings.begin(), scene.warnings.begin(), scene.warnings.end());
   if (!request.quiet && !request.json) printWarnings(report.warnings);
+  if (!request.report.empty()) writeFile(request.report, benchPage(report, pool));
   writeStdout(request.json ? benchJson(report) : benchText(report));
   return 0;
 }
@@ -121,8 +130,9 @@ void addBenchCommand(CLI::App& app, Run& run) {
                                kDefaultFrames))
       ->type_name("N");
   command->add_flag("--json", a.json, "Everything as JSON, the times of each frame included");
+  addReportOption(*command, a.report);
   addPictureOptions(*command, a);
-  addGroupingOptions(*command, a.grouping);
+  addGroupingOptions(*command, a.grouping, pipeline::Grouping::kPlanar);
   addCameraOptions(*command, a);
   command
       ->add_option("--views", a.views,

@@ -110,7 +110,8 @@ std::string countersTable(const PerBaseline<Counters>& counters) {
 }
 
 Json toJsonValue(const Quartiles& q) {
-  return {{"min", q.min}, {"lower", q.lower}, {"median", q.median}, {"upper", q.upper}, {"max", q.max}};
+  return {{"min", q.min},     {"lower", q.lower}, {"median", q.median},
+          {"upper", q.upper}, {"max", q.max},     {"mean", q.mean}};
 }
 
 template <typename Value>

@@ -6,10 +6,13 @@
 #include <algorithm>
 
 #include "cli/build_info.h"
+#include "cli/comparison_page.h"
 #include "cli/comparison_report.h"
 #include "cli/console.h"
+#include "cli/html_page.h"
 #include "cli/output.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "raster/image_io.h"
 
 namespace sheaf::cli {
@@ -18,10 +21,10 @@ namespace {
 constexpr int kDefaultViews = 8;
 
 void checkBeforehand(const SceneCompareRequest& request) {
-  checkOutputs({{"-o", request.output}}, inputFiles(request));
+  checkOutputs({{"-o", request.output}, {"--report", request.report}}, inputFiles(request));
   if (request.output.empty()) return;
   raster::checkFormatAvailable(request.output);
-  const int width = 3 * request.size.width;
+  const int width = 3 * request.size.width + 2 * pipeline::kSideBySideGapPx;
   if (width > raster::kMaxReadSide)
     throw Error(ErrorCode::kUsage, fmt::format("-o: three pictures of {} pixels side by side are too wide: choose a "
                                                "smaller --size",
@@ -46,8 +49,9 @@ std::vector<std::string> beyondInAnyView(const Limits& limits, const pipeline::C
 }  // namespace
 
 void addSceneCompareOptions(CLI::App& command, SceneCompareArguments& a) {
+  addReportOption(command, a.report);
   addPictureOptions(command, a);
-  addGroupingOptions(command, a.grouping);
+  addGroupingOptions(command, a.grouping, pipeline::Grouping::kPlanar);
   addCameraOptions(command, a);
   command
       .add_option("--views", a.views,
@@ -61,7 +65,8 @@ void addSceneCompareOptions(CLI::App& command, SceneCompareArguments& a) {
 
 void understandSceneCompare(const SceneCompareArguments& arguments, SceneCompareRequest& request) {
   understandScene(arguments, request);
-  request.grouping = understandGrouping(arguments.grouping);
+  request.grouping = understandGrouping(arguments.grouping, pipeline::Grouping::kPlanar);
+  request.report = understandReport(arguments.report);
   if (arguments.views) request.views = understandViews(*arguments.views, request.view);
 }
 
@@ -80,7 +85,7 @@ int compareScene(const SceneCompareRequest& request) {
   settings.background = backgroundOf(request, scene);
   ComparisonReport report;
   report.comparison = pipeline::compareGrouping(scene, cameras, request.grouping, settings, pool);
-  report.input = request.input;
+  report.context = contextOf(request, pool);
   report.triangles = scene.triangleCount();
   report.limited = !request.limits.none();
   report.beyond = beyondInAnyView(request.limits, report.comparison);
@@ -92,6 +97,7 @@ int compareScene(const SceneCompareRequest& request) {
     const Image8 picture = pipeline::sideBySide(report.comparison);
     raster::writePicture(request.output, {.srgb = &picture}, pool);
   }
+  if (!request.report.empty()) writeFile(request.report, comparisonPage(report, pool));
   writeStdout(request.json ? comparisonJson(report) : comparisonText(report));
   return report.comparison.drawsRight() && report.beyond.empty() ? 0 : 1;
 }

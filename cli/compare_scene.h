@@ -15,6 +15,7 @@ namespace sheaf::cli {
 struct SceneCompareArguments : SceneArguments {
   GroupingArguments grouping;
   Text views;
+  Text report;
 };
 
 /// The same, understood and checked.
@@ -23,6 +24,7 @@ struct SceneCompareRequest : SceneRequest {
   ViewsRequest views;
   Limits limits;       ///< of quality
   std::string output;  ///< original, grouped and heat map side by side; empty: not written
+  std::string report;  ///< HTML; empty: not written
   bool json = false;
 };
 

@@ -15,7 +15,7 @@ using pipeline::Comparison;
 using pipeline::PictureDifference;
 using pipeline::ViewComparison;
 
-/// A figure of a view's quality; greater is worse, but for the last one.
+/// A figure of a view's quality.
 struct Figure {
   const char* name;
   double (*of)(const PictureDifference&);
@@ -85,36 +85,11 @@ std::string qualityText(const Comparison& comparison) {
   std::string text = "What does grouping cost in quality? Against the original mesh:\n";
   const bool many = comparison.views.size() > 1;
   if (many) text += fmt::format("  {:<18}{:>12}  {:<16}{:>12}\n", "", "worst", "in view", "mean");
-  for (const Figure& figure : kFigures) {
-    const ViewComparison& worst = worstView(comparison, figure);
-    text += fmt::format("  {:<18}{:>12}", figure.name, figure.text(figure.of(worst.quality)));
-    if (many) text += fmt::format("  {:<16}{:>12}", worst.camera.name, figure.text(meanOf(comparison, figure)));
+  for (const QualityFigure& figure : qualityFigures(comparison)) {
+    text += fmt::format("  {:<18}{:>12}", figure.name, figure.worst);
+    if (many) text += fmt::format("  {:<16}{:>12}", figure.worst_view, figure.mean);
     text += "\n";
   }
-  return text;
-}
-
-std::string geometryText(const Comparison& comparison) {
-  const pipeline::GeometricError& g = comparison.geometry;
-  const double original = comparison.original_bytes_per_vertex;
-  const double grouped = comparison.grouped_bytes_per_vertex;
-  return line("eliminated",
-              fmt::format("{:.2f} % ({} of {} vertices)", 100.0 * g.eliminated(), g.grouped, g.vertices)) +
-         line("displacement",
-              fmt::format("max {:.3f} %, mean {:.3f} %, RMS {:.3f} % of the extent", 100.0 * g.displacement_max,
-                          100.0 * g.displacement_mean, 100.0 * g.displacement_rms)) +
-         line("normal deviation", fmt::format("max {:.1f}, RMS {:.2f} degrees", degrees(g.normal_deviation_max_rad),
-                                              degrees(g.normal_deviation_rms_rad))) +
-         line("faces", fmt::format("{} flipped, {} collapsed", g.flipped_faces, g.collapsed_faces)) +
-         line("bytes per vertex", fmt::format("{:.2f} original, {:.2f} grouped ({:.0f} %)", original, grouped,
-                                              original > 0.0 ? 100.0 * grouped / original : 0.0));
-}
-
-std::string verdictText(const ComparisonReport& report) {
-  std::string text = report.comparison.drawsRight() ? "drawn right" : "NOT drawn right";
-  if (report.beyond.empty()) return text + (report.limited ? ", quality within the limits" : "");
-  text += ", quality beyond";
-  for (const std::string& option : report.beyond) text += fmt::format(" {}", option);
   return text;
 }
 
@@ -132,13 +107,52 @@ Json differenceJson(const PictureDifference& difference) {
 
 }  // namespace
 
+std::vector<QualityFigure> qualityFigures(const Comparison& comparison) {
+  std::vector<QualityFigure> result;
+  for (const Figure& figure : kFigures) {
+    const ViewComparison& worst = worstView(comparison, figure);
+    result.push_back({figure.name,
+                      figure.text(figure.of(worst.quality)),
+                      worst.camera.name,
+                      figure.text(meanOf(comparison, figure)),
+                      {}});
+    for (const ViewComparison& view : comparison.views)
+      result.back().views.push_back(figure.text(figure.of(view.quality)));
+  }
+  return result;
+}
+
+std::vector<std::pair<std::string, std::string>> geometryFacts(const Comparison& comparison) {
+  const pipeline::GeometricError& g = comparison.geometry;
+  const double original = comparison.original_bytes_per_vertex;
+  const double grouped = comparison.grouped_bytes_per_vertex;
+  return {{"eliminated", fmt::format("{:.2f} % ({} of {} vertices)", 100.0 * g.eliminated(), g.grouped, g.vertices)},
+          {"displacement",
+           fmt::format("max {:.3f} %, mean {:.3f} %, RMS {:.3f} % of the extent", 100.0 * g.displacement_max,
+                       100.0 * g.displacement_mean, 100.0 * g.displacement_rms)},
+          {"normal deviation", fmt::format("max {:.1f}, RMS {:.2f} degrees", degrees(g.normal_deviation_max_rad),
+                                           degrees(g.normal_deviation_rms_rad))},
+          {"faces", fmt::format("{} flipped, {} collapsed", g.flipped_faces, g.collapsed_faces)},
+          {"bytes per vertex", fmt::format("{:.2f} original, {:.2f} grouped ({:.0f} %)", original, grouped,
+                                           original > 0.0 ? 100.0 * grouped / original : 0.0)}};
+}
+
+std::string verdictText(const ComparisonReport& report) {
+  std::string text = report.comparison.drawsRight() ? "drawn right" : "NOT drawn right";
+  if (report.beyond.empty()) return text + (report.limited ? ", quality within the limits" : "");
+  text += ", quality beyond";
+  for (const std::string& option : report.beyond) text += fmt::format(" {}", option);
+  return text;
+}
+
 std::string comparisonText(const ComparisonReport& report) {
   const Comparison& c = report.comparison;
-  std::string text = line("scene", fmt::format("{}, {} triangles", report.input, report.triangles));
+  std::string text = line("scene", fmt::format("{}, {} triangles", report.context.input, report.triangles));
   text += line("groups", groupingText(c.grouping));
   text += line("views", fmt::format("{} of {}x{} pixels", c.views.size(), c.original.width(), c.original.height()));
-  return text + fmt::format("\n{}\n{}\n{}\n{}", drawingText(c), qualityText(c), geometryText(c),
-                            line("verdict", verdictText(report)));
+  text += fmt::format("\n{}\n{}\n", drawingText(c), qualityText(c));
+  for (const auto& [name, value] : geometryFacts(c)) text += line(name, value);
+  return text + fmt::format("\n{}", line("verdict", verdictText(report)));
 }
 
 std::string comparisonJson(const ComparisonReport& report) {
@@ -151,10 +165,8 @@ std::string comparisonJson(const ComparisonReport& report) {
                      {"drawing", differenceJson(view.drawing)},
                      {"quality", differenceJson(view.quality)}});
   const Json json = {
-      {"input", report.input},
+      {"context", Json::parse(pipeline::toJson(report.context))},
       {"triangles", report.triangles},
-      {"width", c.original.width()},
-      {"height", c.original.height()},
       {"grouping", groupingJson(c.grouping)},
       {"drawing_right", c.drawsRight()},
       {"drawing_allowed_fraction", pipeline::maxDrawingDifference(c.grouping.method)},

@@ -7,11 +7,16 @@
 
 namespace sheaf::cli {
 
-void addGroupingOptions(CLI::App& command, GroupingArguments& a) {
+void addGroupingOptions(CLI::App& command, GroupingArguments& a, pipeline::Grouping usual) {
   const auto add = [&](const char* name, auto& value, const std::string& meaning, const char* type) {
     command.add_option(name, value, meaning)->type_name(type)->group("Groups");
   };
-  add("--grouping", a.grouping, "Lines through two vertices, or planes through one (default planar)", "linear|planar");
+  const bool may_be_none = usual == pipeline::Grouping::kNone;
+  add("--grouping", a.grouping,
+      may_be_none ? "Move vertices onto common lines or planes, by up to epsilon, and\ntransform them together: lossy "
+                    "(default none)"
+                  : "Lines through two vertices, or planes through one (default planar)",
+      may_be_none ? "none|linear|planar" : "linear|planar");
   add("--metric", a.metric,
       "What epsilon holds: how far a vertex moves, or the error of its\nquadric (default distance)",
       "distance|quadric");
@@ -21,9 +26,20 @@ void addGroupingOptions(CLI::App& command, GroupingArguments& a) {
   add("--parameters", a.parameters, "How parameters on lines and planes are stored (default 16bit)", "16bit|float");
 }
 
-pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments) {
+pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments, pipeline::Grouping usual) {
   pipeline::GroupingOptions options;
-  options.method = choose("--grouping", arguments.grouping.value_or("planar"), kGroupingNames);
+  options.method = arguments.grouping ? choose("--grouping", *arguments.grouping, kGroupingNames) : usual;
+  if (options.method == pipeline::Grouping::kNone) {
+    if (usual != pipeline::Grouping::kNone)
+      throw Error(ErrorCode::kUsage, "--grouping none: without groups there is nothing to compare");
+    for (const auto& [given, option] : {std::pair{arguments.metric.has_value(), "--metric"},
+                                        {arguments.limit.has_value(), "--limit"},
+                                        {arguments.epsilon.has_value(), "--epsilon"},
+                                        {arguments.parameters.has_value(), "--parameters"}})
+      if (given)
+        throw Error(ErrorCode::kUsage, fmt::format("{} is for grouped drawing: add --grouping planar", option));
+    return options;
+  }
   options.metric = choose("--metric", arguments.metric.value_or("distance"), kMetricNames);
   options.limit = choose("--limit", arguments.limit.value_or("safe"), kLimitNames);
   options.epsilon = parseFraction("--epsilon", arguments.epsilon.value_or("0.5%"));

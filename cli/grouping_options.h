@@ -1,4 +1,4 @@
-// cli/grouping_options: with which vertex groups a scene is drawn: the options that compare and bench share.
+// cli/grouping_options: with which vertex groups a scene is drawn: the options that render, compare and bench share.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -14,8 +14,9 @@ class App;
 
 namespace sheaf::cli {
 
-inline constexpr Names<pipeline::Grouping, 2> kGroupingNames = {
-    {{"linear", pipeline::Grouping::kLinear}, {"planar", pipeline::Grouping::kPlanar}}};
+inline constexpr Names<pipeline::Grouping, 3> kGroupingNames = {{{"none", pipeline::Grouping::kNone},
+                                                                 {"linear", pipeline::Grouping::kLinear},
+                                                                 {"planar", pipeline::Grouping::kPlanar}}};
 inline constexpr Names<grouping::Metric, 2> kMetricNames = {
     {{"distance", grouping::Metric::kDistance}, {"quadric", grouping::Metric::kQuadric}}};
 inline constexpr Names<grouping::Limit, 2> kLimitNames = {
@@ -32,10 +33,12 @@ struct GroupingArguments {
   std::optional<std::string> parameters;
 };
 
-void addGroupingOptions(CLI::App& command, GroupingArguments& arguments);
+/// usual  the method when none is asked for
+void addGroupingOptions(CLI::App& command, GroupingArguments& arguments, pipeline::Grouping usual);
 
-/// Planar groups by distance, epsilon 0.5 %, unless asked otherwise. Throws Error(kUsage) that names the option.
-pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments);
+/// By distance, epsilon 0.5 %, unless asked otherwise. Throws Error(kUsage) that names the option; also for kNone where
+/// it is not `usual`: without groups there is nothing to compare.
+pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments, pipeline::Grouping usual);
 
 /// `planar groups, distance metric, epsilon 0.5 %, 16-bit parameters`
 std::string groupingText(const pipeline::GroupingOptions& options);

@@ -98,7 +98,8 @@ int runRender(const RenderRequest& request) {
   settings.record_spans = !request.trace_file.empty();
 
   pipeline::PreparedScene prepared;
-  run.prepare = pipeline::timePhase([&] { prepared = pipeline::prepareScene(std::move(scene), pool); });
+  run.prepare =
+      pipeline::timePhase([&] { prepared = pipeline::prepareScene(std::move(scene), pool, request.grouping); });
   if (!request.quiet) printWarnings(prepared.warnings);
 
   pipeline::Renderer renderer(pool);

@@ -27,6 +27,7 @@ constexpr const char* kFooter =
     "  sheaf render builtin:gallery --eye 4,2,6 --target 0,1,0 --fov 35 -o - > gallery.png\n"
     "  sheaf render model.glb -o model.exr --channels depth,ids\n"
     "  sheaf render builtin:terrain --frames 50 --timings=times.json --trace trace.json\n"
+    "  sheaf render scan.ply --grouping planar --epsilon 0.1% -o grouped.png --timings\n"
     "\n";
 
 [[noreturn]] void refuse(const std::string& reason) {
@@ -99,6 +100,7 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
   addOutputOptions(command, a);
   addPictureOptions(command, a);
   addCameraOptions(command, a);
+  addGroupingOptions(command, a.grouping, pipeline::Grouping::kNone);
   addMeasuringOptions(command, a);
   command.footer(std::string(kFooter) + kExitCodes);
 }
@@ -109,6 +111,7 @@ RenderRequest understand(const RenderArguments& arguments) {
   understandMeasuring(arguments, request);
   understandOutput(arguments, request);
   request.cull_patches = !arguments.no_patch_culling;
+  request.grouping = understandGrouping(arguments.grouping, pipeline::Grouping::kNone);
   return request;
 }
 

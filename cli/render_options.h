@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "cli/grouping_options.h"
 #include "cli/scene_options.h"
 
 namespace CLI {
@@ -16,6 +17,7 @@ namespace sheaf::cli {
 struct RenderArguments : SceneArguments {
   Text output;
   bool no_patch_culling = false;
+  GroupingArguments grouping;
   Text channels;
   std::string timings;  ///< kBareTimings, a file, or empty
   Text trace;
@@ -26,6 +28,7 @@ struct RenderArguments : SceneArguments {
 struct RenderRequest : SceneRequest {
   std::string output;  ///< "-": PNG to stdout; empty: nothing is written
   bool cull_patches = true;
+  pipeline::GroupingOptions grouping;
   bool want_depth = false;
   bool want_ids = false;
   bool table = false;

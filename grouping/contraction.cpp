@@ -1,6 +1,8 @@
 #include "grouping/contraction.h"
 
+#include <algorithm>
 #include <bit>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
 
@@ -24,8 +26,6 @@ struct Slot : ClusterMoments {
 };
 static_assert(sizeof(Slot) == 184);
 
-constexpr double kContracted = -1.0;  // length of a dual edge that is gone but still stands in a list
-
 Slot slotOfFace(const Mesh& mesh, const ModelFrame& frame, std::uint32_t face, bool turned) {
   Slot slot{};
   const Triangle& t = mesh.triangles[face];
@@ -46,29 +46,28 @@ Slot slotOfFace(const Mesh& mesh, const ModelFrame& frame, std::uint32_t face, b
 class Contraction {
  public:
   Contraction(const Mesh& mesh, const ModelFrame& frame, DualGraph graph, const std::vector<bool>& turned,
-              const CostWeights& weights)
+              const CostWeights& weights, std::size_t region_edges)
       : weights_(weights),
         edges_(std::move(graph.edges)),
-        slots_(makeSlots(mesh, frame, graph.first, turned)),
-        queue_(static_cast<std::uint32_t>(edges_.size()), [this](std::uint32_t e) { return costOf(edges_[e]); }) {
+        slots_(makeSlots(mesh, frame, std::exchange(graph.first, {}), turned)),
+        queue_(edges_, region_edges, [this](const DualEdge& e) { return costOf(e); }) {
     for (const DualEdge& e : edges_) ++slots_[e.face[0]].degree, ++slots_[e.face[1]].degree;
   }
 
   void run() {
-    while (!queue_.empty()) {
+    while (queue_.prepareTop()) {
       const std::uint32_t id = queue_.top();
       const DualEdge& e = edges_[id];
       if (isHub(slots_[e.face[0]]) || isHub(slots_[e.face[1]])) {
         queue_.update(id, costOf(e));
-        if (queue_.top() != id) continue;
+        if (!queue_.prepareTop() || queue_.top() != id) continue;
       }
       contract(id);
     }
   }
 
   MergeTree takeTree() {
-    edges_ = {};
-    queue_ = MergeQueue();
+    std::vector<DualEdge>().swap(edges_);  // makes room
     MergeTree tree;
     tree.children.resize(merges_);
     tree.cost.resize(merges_);
@@ -113,7 +112,6 @@ class Contraction {
   }
 
   void removeEdge(std::uint32_t id) {
-    queue_.remove(id);
     edges_[id].length = kContracted;
     for (const std::uint32_t slot : edges_[id].face)
       if (--slots_[slot].degree == kHubDegree) former_hubs_.push_back(slot);
@@ -121,10 +119,11 @@ class Contraction {
 
   // Contracts a dual edge: the cluster with fewer neighbours goes into the other one.
   void contract(std::uint32_t id) {
-    const auto cost = std::bit_cast<std::uint32_t>(queue_.topCost());
+    const auto cost = std::bit_cast<std::uint32_t>(edges_[id].cost);
     auto [a, b] = edges_[id].face;
     if (slots_[a].degree < slots_[b].degree || (slots_[a].degree == slots_[b].degree && a > b)) std::swap(a, b);
     const double border = edges_[id].length;
+    queue_.pop();
     removeEdge(id);
     joinParallelEdges(a, b);
     moveEdges(b, a);
@@ -220,13 +219,42 @@ class Contraction {
   std::uint32_t merges_ = 0;
 };
 
+// Numbers merges as if they had been made in the order of their costs; none before the merges that made its parts.
+void sortByCost(std::uint32_t face_count, MergeTree& tree) {
+  const auto merges = static_cast<std::uint32_t>(tree.children.size());
+  std::vector<float> worst = tree.cost;  // of the merge and all below it
+  for (std::uint32_t i = 0; i < merges; ++i)
+    for (const std::uint32_t child : tree.children[i])
+      if (child >= face_count) worst[i] = std::max(worst[i], worst[child - face_count]);
+  std::vector<std::uint32_t> order(merges), rank(merges);
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return worst[a] < worst[b]; });
+  for (std::uint32_t i = 0; i < merges; ++i) rank[order[i]] = i;
+  MergeTree sorted;
+  for (const std::uint32_t merge : order) {
+    auto [a, b] = tree.children[merge];
+    if (a >= face_count) a = face_count + rank[a - face_count];
+    if (b >= face_count) b = face_count + rank[b - face_count];
+    sorted.children.push_back({std::min(a, b), std::max(a, b)});
+    sorted.cost.push_back(tree.cost[merge]);
+  }
+  tree = std::move(sorted);
+}
+
 }  // namespace
 
 MergeTree contractGreedily(const Mesh& mesh, const ModelFrame& frame, DualGraph graph, const std::vector<bool>& turned,
-                           const CostWeights& weights) {
-  Contraction contraction(mesh, frame, std::move(graph), turned, weights);
-  contraction.run();
-  return contraction.takeTree();
+                           const CostWeights& weights, const ContractionPlan& plan) {
+  const bool is_exact = graph.edges.size() <= plan.exact_edges;
+  const std::size_t region_edges = is_exact ? std::max<std::size_t>(1, graph.edges.size()) : plan.region_edges;
+  MergeTree tree;
+  {
+    Contraction contraction(mesh, frame, std::move(graph), turned, weights, region_edges);
+    contraction.run();
+    tree = contraction.takeTree();
+  }
+  if (!is_exact) sortByCost(static_cast<std::uint32_t>(mesh.triangleCount()), tree);
+  return tree;
 }
 
 }  // namespace sheaf::grouping

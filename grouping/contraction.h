@@ -21,6 +21,16 @@ struct MergeTree {
 /// Clusters with more neighbours than this are hubs.
 inline constexpr std::uint32_t kHubDegree = 64;
 
+/// Large meshes are contracted region by region, because jumping about in memory takes more time than all arithmetic.
+struct ContractionPlan {
+  /// Up to so many dual edges every merge is the cheapest of all.
+  std::size_t exact_edges = std::size_t{1} << 18U;
+  /// Beyond, edges are contracted in rounds, each up to a cost that an eighth of them keeps to. Within a round it goes
+  /// through the regions, runs of this many edges, one after the other: in each the cheapest comes first, but where two
+  /// regions touch, one may be ahead of the other by up to a round. When so few edges are left, order is exact again.
+  std::size_t region_edges = std::size_t{1} << 16U;
+};
+
 /// Equal costs (rounded to float) go to the lower dual edge. Where two dual edges become parallel, the one of the
 /// cluster with more neighbours stays.
 /// turned  #F or empty: faces whose normal counts the other way round
@@ -28,6 +38,7 @@ inline constexpr std::uint32_t kHubDegree = 64;
 /// a hub's edges are evaluated anew when it has grown by an eighth, and each of them once more before it is contracted.
 /// O(F log F) time; at most 250 bytes per face, input not counted.
 MergeTree contractGreedily(const mesh::Mesh& mesh, const ModelFrame& frame, DualGraph graph,
-                           const std::vector<bool>& turned, const CostWeights& weights);
+                           const std::vector<bool>& turned, const CostWeights& weights,
+                           const ContractionPlan& plan = {});
 
 }  // namespace sheaf::grouping

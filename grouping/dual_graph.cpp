@@ -103,7 +103,7 @@ class GraphBuilder {
       id = e.next[side];
     }
     const auto id = static_cast<std::uint32_t>(graph_.edges.size());
-    graph_.edges.push_back({{f, g}, {graph_.first[f], graph_.first[g]}, length});
+    graph_.edges.push_back({{f, g}, {graph_.first[f], graph_.first[g]}, length, 0.0F, false});
     graph_.first[f] = graph_.first[g] = id;
     return id;
   }

@@ -36,10 +36,17 @@ TriangleEdges edgesOf(const mesh::Triangle& t);
 struct DualEdge {
   std::array<std::uint32_t, 2> face;
   std::array<std::uint32_t, 2> next;
-  double length;  ///< of all the edges that the two share, in the model frame
+  double length;    ///< of all the edges that the two share, in the model frame
+  float cost;       ///< of joining the two; this and what follows is for contraction
+  bool is_waiting;  ///< in the queue, but not yet in its heap
 
   int sideOf(std::uint32_t f) const { return face[0] == f ? 0 : 1; }
 };
+
+static_assert(sizeof(DualEdge) == 32);
+
+/// DualEdge::length of one that is gone but still stands in lists.
+inline constexpr double kContracted = -1.0;
 
 /// One dual edge at most between any two faces. A mesh edge of k faces links
 ///   k = 1      nothing: a border of the mesh

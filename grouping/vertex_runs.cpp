@@ -10,6 +10,8 @@ namespace sheaf::grouping {
 namespace {
 
 constexpr std::size_t kMaxVertices = 256, kMaxTriangles = 512;
+// Stretches of at least so many vertices are worth beginning at a cache line.
+constexpr std::uint32_t kLongStretch = 64;
 
 std::uint32_t alignedCount(std::uint32_t count) {
   return (count + kRunAlignment - 1) / kRunAlignment * kRunAlignment;
@@ -66,10 +68,7 @@ class PatchSorter {
                                                      : kind == RunKind::kLine && min_plane_run_ > kMaxVertices;
       for (std::uint32_t i = begin; too_short && i < end; ++i) short_ones[short_count++] = order_[i];
     });
-    for (std::size_t i = 0; i < short_count; ++i) {
-      VertexPlace& place = places_[short_ones[i]];
-      place = {.kind = RunKind::kFull, .axis = place.axis};
-    }
+    for (std::size_t i = 0; i < short_count; ++i) places_[short_ones[i]] = {};
     if (short_count > 0) sortLocals(count);
   }
 
@@ -171,7 +170,6 @@ class PatchFiller {
     if (out_.form == ParameterForm::k16Bit) findCorner(at, vertex_count);
     corner_ = at.corner;
     full_ = at.first_full;
-    full_stride_ = at.full_stride;
     parameter_ = at.first_parameter;
     const std::uint32_t* next = source_;
     for (std::uint32_t r = at.first_run; r < at.first_run + at.run_count; ++r) {
@@ -203,7 +201,8 @@ class PatchFiller {
   }
 
   void storeFull(std::uint32_t v) {
-    for (std::size_t k = 0; k < 3; ++k) out_.full[full_ + k * full_stride_] = placed_.positions[v][static_cast<int>(k)];
+    for (std::size_t k = 0; k < 3; ++k)
+      out_.full[full_ + k * out_.full_stride] = placed_.positions[v][static_cast<int>(k)];
     ++full_;
   }
 
@@ -231,21 +230,20 @@ class PatchFiller {
   const std::uint32_t* source_;
   VertexRuns& out_;
   std::array<std::int32_t, 3> corner_{};
-  std::size_t full_ = 0, full_stride_ = 0, parameter_ = 0;
+  std::size_t full_ = 0, parameter_ = 0;
 };
 
 // x, y, z of every slot, padding included.
 void fillBySlot(std::span<const Vec3> positions, const PatchSet& set, TaskPool& pool, VertexRuns& out) {
-  const auto stride = static_cast<std::uint32_t>(set.vertex_source.size());
-  out.full.resize(std::size_t{3} * stride + kRunAlignment);
+  out.full_stride = set.vertex_source.size();  // a multiple of kRunAlignment
+  out.full.resize(3 * out.full_stride + kRunAlignment);
   forPatches(set.patches.size(), pool, [&](std::size_t p) {
     const std::uint32_t begin = set.patches[p].first_vertex;
     out.patches[p].first_full = begin;
-    out.patches[p].full_stride = stride;
     const std::uint32_t end = begin + alignedCount(set.patches[p].vertex_count);
     for (std::uint32_t slot = begin; slot < end; ++slot)
       for (std::size_t k = 0; k < 3; ++k)
-        out.full[slot + k * stride] = positions[set.vertex_source[slot]][static_cast<int>(k)];
+        out.full[slot + k * out.full_stride] = positions[set.vertex_source[slot]][static_cast<int>(k)];
   });
 }
 
@@ -254,17 +252,22 @@ bool joinRuns(const std::vector<std::vector<VertexRun>>& runs, VertexRuns& out) 
   std::uint32_t full = 0, parameters = 0;
   out.patches.resize(runs.size());
   for (std::size_t p = 0; p < runs.size(); ++p) {
+    std::uint32_t full_here = 0, parameters_here = 0;
+    for (const VertexRun& run : runs[p]) (run.kind == RunKind::kFull ? full_here : parameters_here) += run.vertex_count;
+    if (full_here >= kLongStretch) full = alignedCount(full);
+    if (parameters_here >= kLongStretch) parameters = alignedCount(parameters);
     PatchRuns& at = out.patches[p];
     at.first_run = static_cast<std::uint32_t>(out.runs.size());
     at.run_count = static_cast<std::uint32_t>(runs[p].size());
     at.first_full = full;
     at.first_parameter = parameters;
-    for (const VertexRun& run : runs[p]) (run.kind == RunKind::kFull ? at.full_stride : parameters) += run.vertex_count;
-    full += 3 * at.full_stride;
+    full += full_here;
+    parameters += parameters_here;
     out.runs.insert(out.runs.end(), runs[p].begin(), runs[p].end());
   }
   if (parameters == 0) return true;
-  out.full.resize(std::size_t{full} + kRunAlignment);
+  out.full_stride = alignedCount(full);
+  out.full.resize(3 * out.full_stride + kRunAlignment);
   if (out.form == ParameterForm::k16Bit)
     out.quantised.resize(std::size_t{parameters} + kRunAlignment);
   else
@@ -272,9 +275,8 @@ bool joinRuns(const std::vector<std::vector<VertexRun>>& runs, VertexRuns& out) 
   return false;
 }
 
-template <typename T>
-std::uint64_t bytesOf(const std::vector<T>& v) {
-  return v.size() * sizeof(T);
+std::uint64_t bytesOf(const auto& v) {
+  return v.size() * sizeof(v[0]);
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 // grouping/vertex_runs: how the vertices of patches are stored for drawing: in runs that share a plane or a line, so
 // that each vertex needs two or one parameters in place of three coordinates ([PG] eqs. 1, 2).
-//   Form   A patch has one run per plane or line and up to three of vertices in full. In a run on the plane x_k = c the
-//          base of [PG] eq. 2 is the plane's point with zeros elsewhere and s, t are the other two coordinates as they
-//          are: ((m3 + mk c) + mi s) + mj t then rounds exactly as transforming (x, y, z) in full does, if that starts
-//          with coordinate k. Where a vertex is stored in full instead, its run says with which coordinate to start.
+//   Form   A patch has at most one run of vertices in full, then one per plane or line. In a run on the plane x_k = c
+//          the base of [PG] eq. 2 is the plane's point with zeros elsewhere and s, t are the other two coordinates as
+//          they are, so that a vertex is transformed by the products and sums of transforming (x, y, z) in full, of
+//          which those with c are made once: the results are equal to the bit.
 //   16 bit Coordinates on planes are multiples of a power of two, so that n * step is exact and so is scaling the
 //          matrix by step. The grid is one for the whole mesh and counted from each patch's corner: patches that share
 //          a vertex have it at the same place.
@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/aligned.h"
 #include "core/math.h"
 #include "core/task_pool.h"
 #include "grouping/patches.h"
@@ -41,10 +42,10 @@ constexpr std::pair<std::size_t, std::size_t> axesBeside(std::size_t axis) {
 /// Consecutive vertices of a patch that are stored alike.
 struct VertexRun {
   RunKind kind = RunKind::kFull;
-  std::uint8_t axis = 0;             ///< the common coordinate, or with which one transforming in full starts
+  std::uint8_t axis = 0;             ///< kPlane: which coordinate is common
   std::uint16_t vertex_count = 0;    ///< [1, 256]
   std::uint16_t triangle_count = 0;  ///< triangles with all corners in this run; they stand together, run by run
-  float plane = 0.0F;                ///< kPlane: the common coordinate
+  float plane = 0.0F;                ///< kPlane: its value
   std::uint32_t line = kNoIndex;     ///< kLine: into VertexRuns::lines
   Vec3 corner_lo{0.0F};              ///< box of the vertices; of a line: the end of least parameter
   Vec3 corner_hi{0.0F};              ///< of a line: the end of greatest parameter
@@ -62,8 +63,7 @@ struct RunLine {
 struct PatchRuns {
   std::uint32_t first_run = 0;
   std::uint32_t run_count = 0;
-  std::uint32_t first_full = 0;  ///< x of the first; y and z are full_stride and 2 full_stride farther
-  std::uint32_t full_stride = 0;
+  std::uint32_t first_full = 0;
   std::uint32_t first_parameter = 0;
   std::array<std::int32_t, 3> corner{};  ///< of 16-bit coordinates: coordinate = (corner + q) * step
 };
@@ -73,12 +73,14 @@ struct VertexRuns {
   std::vector<PatchRuns> patches;  ///< #patches
   std::vector<VertexRun> runs;     ///< by patch: full ones, planes, lines
   std::vector<RunLine> lines;
-  /// Vertices stored in full: of each patch all x, all y, all z, so that a patch is one stretch of memory; or, where
-  /// nothing is grouped, those of the whole mesh, indexed as PatchSet::vertex_source, padding included.
-  std::vector<float> full;
+  /// Vertices stored in full: all x, then all y, then all z, full_stride apart, so that each is one stream of memory
+  /// from patch to patch, and long stretches begin a cache line. Where nothing is grouped they are indexed as
+  /// PatchSet::vertex_source, padding included.
+  AlignedVector<float> full;
+  std::size_t full_stride = 0;
   /// Form k16Bit: s in the lower half, t in the upper one, so that a patch is one stream of memory; lines have t = 0.
-  std::vector<std::uint32_t> quantised;
-  std::vector<Vec2> parameters;  ///< form kFloat: (s, t)
+  AlignedVector<std::uint32_t> quantised;
+  AlignedVector<Vec2> parameters;  ///< form kFloat: (s, t)
   ParameterForm form = ParameterForm::k16Bit;
   float step = 1.0F;  ///< of 16-bit coordinates on planes; a power of two
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 namespace sheaf::pipeline {
 namespace {
@@ -130,7 +131,8 @@ BaselineRun BaselineBench::run(std::span<const scenes::Camera> cameras, int fram
 Quartiles quartilesOf(std::vector<double> values) {
   if (values.empty()) return {};
   std::sort(values.begin(), values.end());
-  return {values.front(), atRank(values, 0.25), atRank(values, 0.5), atRank(values, 0.75), values.back()};
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  return {values.front(), atRank(values, 0.25), atRank(values, 0.5), atRank(values, 0.75), values.back(), mean};
 }
 
 std::vector<BaselineRow> summarize(const BaselineRun& run, std::uint64_t vertex_count) {

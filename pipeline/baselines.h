@@ -66,6 +66,7 @@ struct Quartiles {
   double median = 0.0;
   double upper = 0.0;
   double max = 0.0;
+  double mean = 0.0;  ///< means of parts add up to the mean of the whole
 };
 
 /// Between two values they are interpolated. All zero without values.

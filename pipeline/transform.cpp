@@ -14,11 +14,9 @@ Viewport::Viewport(int width, int height)
       guard_x(kGuardPx / half_width_px),
       guard_y(kGuardPx / half_height_px) {}
 
-Vec4 transformVertex(const Vec3& p, const Mat4& m, std::size_t first_axis) {
-  const auto [second, third] = grouping::axesBeside(first_axis);
-  const auto a = static_cast<int>(first_axis), b = static_cast<int>(second), c = static_cast<int>(third);
+Vec4 transformVertex(const Vec3& p, const Mat4& m) {
   Vec4 clip;
-  for (int row = 0; row < 4; ++row) clip[row] = ((m[3][row] + m[a][row] * p[a]) + m[b][row] * p[b]) + m[c][row] * p[c];
+  for (int row = 0; row < 4; ++row) clip[row] = ((m[3][row] + m[0][row] * p.x) + m[1][row] * p.y) + m[2][row] * p.z;
   return clip;
 }
 
@@ -46,7 +44,7 @@ Vec4 transformGrouped(const grouping::VertexRuns& runs, const grouping::PatchRun
   position[static_cast<int>(j)] =
       quantised ? static_cast<float>(patch.corner[j] + static_cast<std::int32_t>(parameters.t)) * runs.step
                 : parameters.t;
-  return transformVertex(position, m, run.axis);
+  return transformVertex(position, m);
 }
 
 raster::ScreenVertex projectVertex(const Vec4& clip, const Viewport& viewport) {

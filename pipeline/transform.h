@@ -88,8 +88,7 @@ OutcodeSummary outcodeVertices(const ClipVertices& vertices, std::uint32_t begin
                                const Viewport& viewport, std::int32_t* codes);
 
 /// Plain references: one vertex with the same operations in the same order, so that results are equal to the bit.
-/// first_axis  the coordinate that is added first, the others follow in their order
-Vec4 transformVertex(const Vec3& position, const Mat4& clip_from_object, std::size_t first_axis = 0);
+Vec4 transformVertex(const Vec3& position, const Mat4& clip_from_object);
 /// A vertex of a plane or line from its parameters as they are stored; t is not used for lines.
 struct StoredParameters {
   float s, t;  ///< form kFloat; of k16Bit the whole numbers

@@ -51,23 +51,18 @@ struct ToScreen {
   }
 };
 
-// ((m3 + a x_a) + b x_b) + c x_c with (a, b, c) = (axis, the two others).
+// ((m3 + m0 x) + m1 y) + m2 z.
 template <class Target>
-HWY_INLINE void TransformFull(const float* x, std::size_t stride, std::size_t axis, std::uint32_t to, std::uint32_t end,
-                              const Mat4& m, const Target& target) {
+HWY_INLINE void TransformFull(const float* x, std::size_t stride, std::uint32_t to, std::uint32_t end, const Mat4& m,
+                              const Target& target) {
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(df));
-  const auto [second, third] = grouping::axesBeside(axis);
-  const float* const xa = x + axis * stride;
-  const float* const xb = x + second * stride;
-  const float* const xc = x + third * stride;
-  const Vec4 ma = m[static_cast<int>(axis)], mb = m[static_cast<int>(second)], mc = m[static_cast<int>(third)];
   for (std::uint32_t v = 0; to + v < end; v += lanes) {
-    const VF a = hn::LoadU(df, xa + v);
-    const VF b = hn::LoadU(df, xb + v);
-    const VF c = hn::LoadU(df, xc + v);
+    const VF vx = hn::LoadU(df, x + v);
+    const VF vy = hn::LoadU(df, x + stride + v);
+    const VF vz = hn::LoadU(df, x + 2 * stride + v);
     const auto row = [&](int i) HWY_ATTR {
-      const VF sum = hn::Add(hn::Set(df, m[3][i]), hn::Mul(hn::Set(df, ma[i]), a));
-      return hn::Add(hn::Add(sum, hn::Mul(hn::Set(df, mb[i]), b)), hn::Mul(hn::Set(df, mc[i]), c));
+      const VF sum = hn::Add(hn::Set(df, m[3][i]), hn::Mul(hn::Set(df, m[0][i]), vx));
+      return hn::Add(hn::Add(sum, hn::Mul(hn::Set(df, m[1][i]), vy)), hn::Mul(hn::Set(df, m[2][i]), vz));
     };
     target.store(row(0), row(1), row(2), row(3), to + v, end);
   }
@@ -92,20 +87,41 @@ struct GridParameters {
   }
 };
 
-// [PG] eq. 2: base + s S + t T.
-template <class Parameters, class Target>
-HWY_INLINE void TransformPlane(const Parameters& parameters, const Vec4& base, const Vec4& along_s, const Vec4& along_t,
-                               std::uint32_t to, std::uint32_t end, const Target& target) {
+// [PG] eq. 2: base + s S + t T. The constant is added where coordinate kAxis has its place, so that sums round as those
+// of TransformFull(): it is part of the base for x and costs one more addition for y and z.
+template <std::size_t kAxis, class Parameters, class Target>
+HWY_INLINE void TransformPlane(const Parameters& parameters, const Vec4& origin, const Vec4& constant,
+                               const Vec4& along_s, const Vec4& along_t, std::uint32_t to, std::uint32_t end,
+                               const Target& target) {
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(df));
+  const Vec4 base = kAxis == 0 ? origin + constant : origin;
   for (std::uint32_t v = 0; to + v < end; v += lanes) {
     VF s, t;
     parameters.load(v, s, t);
     const auto row = [&](int i) HWY_ATTR {
-      const VF sum = hn::Add(hn::Set(df, base[i]), hn::Mul(hn::Set(df, along_s[i]), s));
-      return hn::Add(sum, hn::Mul(hn::Set(df, along_t[i]), t));
+      VF sum = hn::Add(hn::Set(df, base[i]), hn::Mul(hn::Set(df, along_s[i]), s));
+      if constexpr (kAxis == 1) sum = hn::Add(sum, hn::Set(df, constant[i]));
+      sum = hn::Add(sum, hn::Mul(hn::Set(df, along_t[i]), t));
+      if constexpr (kAxis == 2) sum = hn::Add(sum, hn::Set(df, constant[i]));
+      return sum;
     };
     target.store(row(0), row(1), row(2), row(3), to + v, end);
   }
+}
+
+template <class Parameters, class Target>
+HWY_INLINE void TransformPlaneOn(std::size_t axis, const Parameters& parameters, float plane, float step, const Mat4& m,
+                                 std::uint32_t to, std::uint32_t end, const Target& target) {
+  const auto [i, j] = grouping::axesBeside(axis);
+  const Vec4 constant = m[static_cast<int>(axis)] * plane;
+  // Scaling by a power of two is exact: these give the products of the whole coordinates.
+  const Vec4 s = m[static_cast<int>(i)] * step, t = m[static_cast<int>(j)] * step;
+  if (axis == 0)
+    TransformPlane<0>(parameters, m[3], constant, s, t, to, end, target);
+  else if (axis == 1)
+    TransformPlane<1>(parameters, m[3], constant, s, t, to, end, target);
+  else
+    TransformPlane<2>(parameters, m[3], constant, s, t, to, end, target);
 }
 
 // [PG] eq. 1: base + s L, with s = s0 + q ds for the stored q.
@@ -126,16 +142,13 @@ template <class Target>
 HWY_INLINE void TransformPlaneRun(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch,
                                   const grouping::VertexRun& run, std::uint32_t first, std::uint32_t to,
                                   std::uint32_t end, const Mat4& m, const Target& target) {
-  const auto [i, j] = grouping::axesBeside(run.axis);
-  const Vec4 base = m[3] + m[run.axis] * run.plane;
-  const Vec4 s = m[static_cast<int>(i)], t = m[static_cast<int>(j)];
   if (runs.form == grouping::ParameterForm::kFloat) {
     const FloatParameters parameters{runs.parameters.data() + first};
-    TransformPlane(parameters, base, s, t, to, end, target);
+    TransformPlaneOn(run.axis, parameters, run.plane, 1.0F, m, to, end, target);
   } else {
-    // Scaling by a power of two is exact: these are the products of the whole coordinates.
+    const auto [i, j] = grouping::axesBeside(run.axis);
     const GridParameters parameters{runs.quantised.data() + first, patch.corner[i], patch.corner[j]};
-    TransformPlane(parameters, base, s * runs.step, t * runs.step, to, end, target);
+    TransformPlaneOn(run.axis, parameters, run.plane, runs.step, m, to, end, target);
   }
 }
 
@@ -159,7 +172,7 @@ HWY_INLINE void TransformAnyRun(const grouping::VertexRuns& runs, const grouping
   const std::uint32_t to = start.vertex + begin;
   const std::uint32_t to_end = start.vertex + end;
   if (run.kind == grouping::RunKind::kFull)
-    TransformFull(runs.full.data() + start.full + begin, patch.full_stride, run.axis, to, to_end, m, target);
+    TransformFull(runs.full.data() + start.full + begin, runs.full_stride, to, to_end, m, target);
   else if (run.kind == grouping::RunKind::kPlane)
     TransformPlaneRun(runs, patch, run, start.parameter + begin, to, to_end, m, target);
   else

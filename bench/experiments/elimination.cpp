@@ -174,7 +174,7 @@ std::string writeTable1(Context& context) {
 }
 
 std::string writeFigure7(Context& context) {
-  constexpr std::array<std::size_t, 10> kCounts = {50, 100, 150, 300, 600, 1000, 1500, 2000, 2904, 5000};
+  constexpr std::array<std::size_t, 10> kCounts = {50, 100, 150, 300, 600, 1000, 1500, 2000, 2900, 5000};
   Chart chart{.title = "Vertices eliminated (%), planar, epsilon 0.5 %",
               .x = {"vertices", true, {50, 100, 200, 500, 1000, 2000, 5000, 10000, 40000}},
               .y = {"eliminated %", false, {60, 65, 70, 75, 80, 85, 90, 95, 100}},
@@ -261,11 +261,9 @@ std::string writePlanes(Context& context) {
   }
   return table.text() +
          "[PG] 6: planes that are not aligned with the axes, among them those of a dodecahedron, eliminate \"very few "
-         "additional vertices\" and have no tangible benefit. True of 1000 vertices and more. Below 600 they eliminate "
-         "a "
-         "few points more; six directions cost six transformed vectors a frame in place of none, since the images of "
-         "the "
-         "axes are the columns of the matrix.\n\n";
+         "additional vertices\" and have no tangible benefit. True of 1000 vertices and more. Up to 600 they eliminate "
+         "a few points more; six planes cost twelve transformed vectors a frame in place of none, since the images of "
+         "the axes are the columns of the matrix.\n\n";
 }
 
 std::string writeSearch(Context& context) {

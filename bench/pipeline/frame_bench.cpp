@@ -22,11 +22,10 @@ namespace {
 void transformAndProject(benchmark::State& state) {
   const auto patches = static_cast<std::size_t>(state.range(0));
   grouping::VertexRuns vertices;
-  const auto stride = static_cast<std::uint32_t>(patches * kMaxPatchVertices);
-  vertices.full.assign(std::size_t{3} * stride + grouping::kRunAlignment, 0.25F);
+  vertices.full_stride = patches * kMaxPatchVertices;
+  vertices.full.assign(3 * vertices.full_stride + grouping::kRunAlignment, 0.25F);
   for (std::uint32_t p = 0; p < patches; ++p) {
-    vertices.patches.push_back(
-        {.first_run = p, .run_count = 1, .first_full = p * kMaxPatchVertices, .full_stride = stride});
+    vertices.patches.push_back({.first_run = p, .run_count = 1, .first_full = p * kMaxPatchVertices});
     vertices.runs.push_back({.vertex_count = kMaxPatchVertices});
   }
   Mat4 clip_from_object(1.0F);

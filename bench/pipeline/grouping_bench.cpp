@@ -26,7 +26,8 @@ grouping::VertexRuns patchOfRuns(RunKind kind, ParameterForm form, std::uint32_t
   runs.quantised.assign(kVertexSlots, 1234);
   runs.parameters.assign(kVertexSlots, Vec2(0.25F));
   const std::uint32_t count = kMaxPatchVertices / length;
-  runs.patches.push_back({.run_count = count, .full_stride = kMaxPatchVertices});
+  runs.full_stride = kVertexSlots;
+  runs.patches.push_back({.run_count = count});
   for (std::uint32_t r = 0; r < count; ++r)
     runs.runs.push_back({.kind = kind,
                          .axis = static_cast<std::uint8_t>(kind == RunKind::kLine ? 0 : r % 3),

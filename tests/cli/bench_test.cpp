@@ -115,4 +115,18 @@ TEST_CASE("cli/bench: views are an orbit, the inside at three shares, a flight, 
   CHECK(benchJson(folder, {"--views", "c.json", "--frames", "4"})["sections"][0]["views"] == 2);
 }
 
+TEST_CASE("cli/bench: the report is one HTML file with the figures of the table") {
+  const TempFolder folder;
+  const RunResult result = bench(folder, {"--frames", "2", "--report", "r.html"});
+  CHECK(result.code == 0);
+  CHECK(result.out.find("transform+clip") != std::string::npos);
+  const std::string html = folder.read("r.html");
+  CHECK(html.starts_with("<!DOCTYPE html>"));
+  CHECK(html.ends_with("</html>\n"));
+  for (const char* word : {"classic", "modern", "grouped", "transform+clip", "data:image/png;base64,", "class=\"bar\"",
+                           "class=\"lines\"", "prefers-color-scheme: dark", "revision", "SIMD target", "-ffp-contract"})
+    CHECK_MESSAGE(html.find(word) != std::string::npos, word);
+  CHECK(folder.fileCount() == 1);
+}
+
 }  // namespace sheaf::cli

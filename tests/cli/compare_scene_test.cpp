@@ -124,4 +124,18 @@ TEST_CASE("cli/compare_scene: cameras come from a file, in its coordinates as --
   CHECK(bad.err.find("c.json: camera 0: eye is missing") != std::string::npos);
 }
 
+TEST_CASE("cli/compare_scene: the report is one HTML file with both answers and three pictures") {
+  const TempFolder folder;
+  CHECK(compare(folder, {"--views", "orbit:3", "--report", "r.html", "--max-differing", "0"}).code == 1);
+  const std::string html = folder.read("r.html");
+  CHECK(html.ends_with("</html>\n"));
+  for (const char* word : {"Is grouped drawing right?", "What does grouping cost in quality?", "View by view",
+                           "quality beyond --max-differing", "silhouette", "bytes per vertex", "revision"})
+    CHECK_MESSAGE(html.find(word) != std::string::npos, word);
+  std::size_t pictures = 0;
+  for (std::size_t at = html.find("<img "); at != std::string::npos; at = html.find("<img ", at + 1)) ++pictures;
+  CHECK(pictures == 3);
+  CHECK(folder.fileCount() == 1);
+}
+
 }  // namespace sheaf::cli

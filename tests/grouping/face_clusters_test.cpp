@@ -451,6 +451,35 @@ TEST_CASE("grouping/face_clusters: hubs with thousands of neighbours") {
   }
 }
 
+TEST_CASE(
+    "grouping/face_clusters: contracted region by region, a mesh has a hierarchy as good and in the order of costs") {
+  std::mt19937 rng(0x4e61);
+  const mesh::Mesh mesh = lumpyBall(rng, 60, 80, 0.003F);
+  const ModelFrame frame = modelFrameOf(mesh);
+  const auto contract = [&](const ContractionPlan& plan) {
+    MergeTree tree = contractGreedily(mesh, frame, buildDualGraph(mesh, frame), {}, {}, plan);
+    return hierarchyOf(static_cast<std::uint32_t>(mesh.triangleCount()), std::move(tree.children),
+                       std::move(tree.cost));
+  };
+  const auto sum = [](const FaceClusters& c) { return std::accumulate(c.cost.begin(), c.cost.end(), 0.0); };
+  const FaceClusters exact = contract({});
+  for (const std::size_t region_edges : {std::size_t{1000}, std::size_t{3000}}) {
+    const FaceClusters clusters = contract({0, region_edges});
+    CHECK(findBrokenMerge(clusters.faceCount(), clusters.children) == "");
+    CHECK(clusters.roots == exact.roots);
+    CHECK(clusters != exact);
+    CHECK(std::abs(sum(clusters) - sum(exact)) < 0.001 * double(exact.cost.size()));  // costs reach from -1 to 3
+    // A merge that costs less than the one before it is one that the latter has made possible, or one of its parts has.
+    std::size_t out_of_order = 0;
+    for (std::uint32_t i = 1; i < clusters.cost.size(); ++i) {
+      const auto& made_of = clusters.children[i];
+      if (clusters.cost[i] < clusters.cost[i - 1] && std::max(made_of[0], made_of[1]) + 1 < clusters.faceCount())
+        ++out_of_order;
+    }
+    CHECK(out_of_order == 0);
+  }
+}
+
 TEST_CASE("grouping/face_clusters: what is inconsistent is found") {
   const mesh::Mesh mesh = mesh::makeGrid(6);
   const FaceClusters good = clustersOf(mesh);

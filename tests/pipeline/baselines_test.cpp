@@ -48,6 +48,7 @@ TEST_CASE("pipeline/baselines: quartiles lie between the values where there is n
   CHECK(five.median == 3.0);
   CHECK(five.upper == 4.0);
   CHECK(five.max == 5.0);
+  CHECK(five.mean == 3.0);
   const Quartiles four = quartilesOf({4.0, 3.0, 2.0, 1.0});
   CHECK(four.lower == 1.75);
   CHECK(four.median == 2.5);

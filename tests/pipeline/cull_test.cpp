@@ -168,7 +168,7 @@ TEST_CASE("pipeline/cull: the codes of a run hold for every member, on every SIM
       Vec3 t(share(0), share(1), share(2));
       if (run.kind == grouping::RunKind::kLine) t = Vec3(t.x);
       const Vec3 p = run.corner_lo + t * (run.corner_hi - run.corner_lo);
-      const Vec4 clip = transformVertex(p, view.clip_from_object, static_cast<std::size_t>(axis));
+      const Vec4 clip = transformVertex(p, view.clip_from_object);
       const std::int32_t code = outcodeVertex(clip, random.view.viewport);
       CHECK((codes.must & ~code) == 0);
       CHECK((code & ~codes.may) == 0);

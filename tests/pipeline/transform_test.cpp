@@ -27,7 +27,7 @@ struct OneRun {
     vertices.patches[0].run_count = 1;
     vertices.runs.resize(1);
     vertices.runs[0].vertex_count = static_cast<std::uint16_t>(count);
-    vertices.patches[0].full_stride = count;
+    vertices.full_stride = count;
   }
   grouping::PatchRuns& patch() { return vertices.patches[0]; }
   grouping::VertexRun& run() { return vertices.runs[0]; }
@@ -40,10 +40,10 @@ std::vector<float> randomFloats(std::mt19937& rng, std::size_t count) {
   return values;
 }
 
-OneRun fullRun(std::mt19937& rng, std::uint32_t count, std::uint8_t axis) {
+OneRun fullRun(std::mt19937& rng, std::uint32_t count) {
   OneRun one(count);
-  one.run().axis = axis;
-  one.vertices.full = randomFloats(rng, std::size_t{3} * count);
+  const std::vector<float> floats = randomFloats(rng, std::size_t{3} * count);
+  one.vertices.full.assign(floats.begin(), floats.end());
   return one;
 }
 
@@ -73,7 +73,7 @@ TEST_CASE("pipeline/transform: every SIMD target equals the references, bit for 
   const Viewport viewport(131, 97);
   for (const std::uint32_t count : {1U, 3U, 15U, 16U, 17U, 100U, 256U}) {
     CAPTURE(count);
-    OneRun one = fullRun(rng, count, static_cast<std::uint8_t>(count % 3));
+    OneRun one = fullRun(rng, count);
     const Mat4 clip_from_object = randomMatrix(rng);
     forEachTarget([&] {
       ClipVertices clip;
@@ -88,9 +88,9 @@ TEST_CASE("pipeline/transform: every SIMD target equals the references, bit for 
       std::int32_t any = 0;
       for (std::uint32_t v = 0; v < count; ++v) {
         CAPTURE(v);
-        const std::vector<float>& full = one.vertices.full;
+        const AlignedVector<float>& full = one.vertices.full;
         const Vec3 position(full[v], full[v + count], full[v + 2 * count]);
-        const Vec4 expected = transformVertex(position, clip_from_object, one.run().axis);
+        const Vec4 expected = transformVertex(position, clip_from_object);
         checkBits(clip, v, expected);
         CHECK(codes[v] == outcodeVertex(expected, viewport));
         all &= codes[v];
@@ -177,13 +177,47 @@ TEST_CASE("pipeline/transform: a vertex on a plane comes out as if it had been t
     const Mat4 clip_from_object = randomMatrix(rng);
     ClipVertices clip;
     transformRun(runs, runs.patches[0], run, RunStart(patch), 0, 1, clip_from_object, clip);
-    checkBits(clip, 0, transformVertex(position, clip_from_object, run.axis));
+    checkBits(clip, 0, transformVertex(position, clip_from_object));
+  }
+}
+
+TEST_CASE("pipeline/transform: a vertex on a line comes out within eight roundings of its full transform") {
+  std::mt19937 rng(80);
+  std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+  const auto vec3 = [&] {
+    const float x = unit(rng), y = unit(rng), z = unit(rng);
+    return Vec3(x, y, z);
+  };
+  for (int i = 0; i < 2000; ++i) {
+    CAPTURE(i);
+    OneRun one(1);
+    one.run().kind = grouping::RunKind::kLine;
+    one.run().line = 0;
+    one.vertices.lines = {{100.0F * vec3(), vec3(), 4.0F * unit(rng), 1e-4F * std::abs(unit(rng))}};
+    const grouping::RunLine& line = one.vertices.lines[0];
+    const std::uint32_t step = rng() & 0xFFFFU;
+    one.vertices.quantised.assign(1 + grouping::kRunAlignment, step);
+    const Mat4 clip_from_object = randomMatrix(rng);
+    ClipVertices clip;
+    transformWhole(one, 1, clip_from_object, clip);
+    const double s = double{line.s0} + step * double{line.ds};
+    for (int row = 0; row < 4; ++row) {
+      double exact = clip_from_object[3][row], magnitude = std::abs(exact);
+      for (int k = 0; k < 3; ++k) {
+        const double m = clip_from_object[k][row];
+        exact += m * (line.base[k] + s * line.direction[k]);
+        magnitude += std::abs(m) * (std::abs(line.base[k]) +
+                                    (std::abs(line.s0) + step * double{line.ds}) * std::abs(double{line.direction[k]}));
+      }
+      const float found[] = {clip.x[0], clip.y[0], clip.z[0], clip.w[0]};
+      CHECK(std::abs(found[row] - exact) <= 8.0 * std::exp2(-24.0) * magnitude);
+    }
   }
 }
 
 TEST_CASE("pipeline/transform: part of a run is written and nothing beside it") {
   std::mt19937 rng(79);
-  OneRun one = fullRun(rng, 100, 0);
+  OneRun one = fullRun(rng, 100);
   const Mat4 clip_from_object = randomMatrix(rng);
   forEachTarget([&] {
     ClipVertices whole;

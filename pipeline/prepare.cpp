@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "core/error.h"
 #include "grouping/group_quality.h"
 #include "grouping/linear_groups.h"
 #include "grouping/planar_groups.h"
@@ -193,9 +194,14 @@ PreparedScene prepareScene(scenes::Scene scene, TaskPool& pool, const GroupingOp
   const std::vector<bool> positions_shaded = meshesWithShadedPositions(scene);
   out.meshes.reserve(scene.meshes.size());
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-    out.meshes.push_back(prepareMesh(scene.meshes[m], grouping, positions_shaded[m], pool, out.warnings));
+    try {
+      out.meshes.push_back(prepareMesh(scene.meshes[m], grouping, positions_shaded[m], pool, out.warnings));
+    } catch (const Error& e) {  // grouping knows no names of files
+      throw Error(e.code(), fmt::format("{}: {}", scene.name, e.what()));
+    }
     scene.meshes[m] = {};
   }
+  for (std::string& warning : out.warnings) warning = fmt::format("{}: {}", scene.name, warning);
   out.textures.reserve(scene.textures.size());
   for (scenes::Texture& texture : scene.textures) {
     out.textures.emplace_back(texture.pixels);

@@ -138,4 +138,16 @@ TEST_CASE("cli/compare_scene: the report is one HTML file with both answers and 
   CHECK(folder.fileCount() == 1);
 }
 
+TEST_CASE("cli/compare_scene: positions that cannot be grouped are refused by the name of the file") {
+  const TempFolder folder;
+  folder.write("far.obj", "v 1e38 0 0\nv 0 1e38 0\nv 0 0 0\nf 1 2 3\n");
+  for (const char* command : {"compare", "bench"}) {
+    const RunResult result = runSheaf(folder, {command, "far.obj", "--size", "8x8"});
+    CHECK(result.code == 3);
+    CHECK(result.out.empty());
+    CHECK(isOneErrorLine(result.err));
+    CHECK_MESSAGE(result.err.find("far.obj: vertex 0: ") != std::string::npos, result.err);
+  }
+}
+
 }  // namespace sheaf::cli

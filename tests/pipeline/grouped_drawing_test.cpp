@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "raster/image_compare.h"
@@ -56,33 +57,39 @@ std::vector<scenes::Camera> camerasFor(const scenes::Scene& scene) {
 }  // namespace
 
 TEST_CASE("pipeline/grouped: by planes, grouped and ungrouped drawing of the snapped mesh are the same bytes") {
+  constexpr std::pair<ParameterForm, double> kForms[] = {{ParameterForm::k16Bit, 0.0},   {ParameterForm::k16Bit, 0.005},
+                                                         {ParameterForm::k16Bit, 0.05},  {ParameterForm::k16Bit, 2.0},
+                                                         {ParameterForm::kFloat, 0.005}, {ParameterForm::kFloat, 2.0}};
   TaskPool pool(2);
   std::uint64_t grouped_vertices = 0, outside = 0, inside = 0;
   for (const char* spec : kSmallScenes) {
     CAPTURE(spec);
     const scenes::Scene scene = scenes::buildBuiltin(spec);
     const std::vector<scenes::Camera> cameras = camerasFor(scene);
-    for (const ParameterForm form : {ParameterForm::k16Bit, ParameterForm::kFloat})
-      for (const double epsilon : {0.0, 0.005, 0.05, 2.0}) {
-        CAPTURE(epsilon);
-        const GroupingOptions options = planar(epsilon, form);
-        const PreparedScene by_groups = prepare(scene, cameras[0], options, pool);
-        const PreparedScene in_full = prepare(scene, cameras[0], ungrouped(options), pool);
-        for (const scenes::Camera& camera : cameras)
-          for (const bool cull : {true, false}) {
-            const Frame grouped = draw(by_groups, camera, pool, cull);
-            const Frame expected = draw(in_full, camera, pool, cull);
-            CHECK(samePicture(grouped, expected));
-            CHECK(expected.counters.vertices_grouped == 0);
-            grouped_vertices += grouped.counters.vertices_grouped;
-            outside += grouped.counters.groups_outside;
-            inside += grouped.counters.groups_inside;
-          }
+    int draws = 0;
+    for (const auto& [form, epsilon] : kForms) {
+      CAPTURE(epsilon);
+      const GroupingOptions options = planar(epsilon, form);
+      const PreparedScene by_groups = prepare(scene, cameras[0], options, pool);
+      const PreparedScene in_full = prepare(scene, cameras[0], ungrouped(options), pool);
+      for (const scenes::Camera& camera : cameras) {
+        // Each camera with culling in one form and without in the next.
+        const bool cull = draws++ % 2 == 0;
+        CAPTURE(cull);
+        const Frame grouped = draw(by_groups, camera, pool, cull);
+        const Frame expected = draw(in_full, camera, pool, cull);
+        CHECK(samePicture(grouped, expected));
+        CHECK(expected.counters.vertices_grouped == 0);
+        grouped_vertices += grouped.counters.vertices_grouped;
+        outside += grouped.counters.groups_outside;
+        inside += grouped.counters.groups_inside;
       }
+      ++draws;
+    }
   }
   CHECK(grouped_vertices > 100000);
-  CHECK(outside > 1000);
-  CHECK(inside > 1000);
+  CHECK(outside > 300);
+  CHECK(inside > 300);
 }
 
 TEST_CASE("pipeline/grouped: every SIMD target and thread count draws the same bytes") {

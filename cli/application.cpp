@@ -23,6 +23,7 @@ constexpr const char* kFooter =
     "  sheaf compare expected.png actual.png -o difference.png\n"
     "  sheaf simplify scan.ply --vertices 3000 -o small.ply\n"
     "  sheaf group small.ply --epsilon 0.5% --snapped snapped.ply\n"
+    "  sheaf cluster scan.ply --clusters 100 -o clusters.png\n"
     "\n";
 
 /// `--size=`: the parser would take the next word as the value.
@@ -53,6 +54,7 @@ int parseAndRun(int argc, char** argv) {
   addBenchCommand(app, run);
   addInfoCommand(app, run);
   addGroupCommand(app, run);
+  addClusterCommand(app, run);
   addSimplifyCommand(app, run);
   addScenesCommand(app, run);
   try {
@@ -71,8 +73,9 @@ int parseAndRun(int argc, char** argv) {
     return 0;
   }
   if (!run)
-    throw Error(ErrorCode::kUsage,
-                "a subcommand is missing: render, compare, bench, info, group, simplify or scenes (see sheaf --help)");
+    throw Error(
+        ErrorCode::kUsage,
+        "a subcommand is missing: render, compare, bench, info, group, cluster, simplify or scenes (see sheaf --help)");
   return run();
 }
 

@@ -22,6 +22,7 @@ void addCompareCommand(CLI::App& app, Run& run);
 void addBenchCommand(CLI::App& app, Run& run);
 void addInfoCommand(CLI::App& app, Run& run);
 void addGroupCommand(CLI::App& app, Run& run);
+void addClusterCommand(CLI::App& app, Run& run);
 void addSimplifyCommand(CLI::App& app, Run& run);
 void addScenesCommand(CLI::App& app, Run& run);
 

@@ -48,8 +48,7 @@ void understandOutput(const RenderArguments& arguments, RenderRequest& request) 
     refuse("-o FILE is missing (without it, --timings or --trace must ask for the times)");
   const bool file = !request.output.empty() && request.output != "-";
   const raster::PictureFormat format = file ? raster::formatOf(request.output) : raster::PictureFormat{.name = "PNG"};
-  if (request.background && request.background->a < 255 && !format.alpha)
-    refuse(fmt::format("--background {}: {} has no alpha channel", *arguments.background, format.name));
+  checkBackground(arguments, request, format);
   if (!arguments.channels) return;
   understandChannels(*arguments.channels, request);
   if (!format.extra_channels)

@@ -130,6 +130,12 @@ void understandScene(const SceneArguments& arguments, SceneRequest& request) {
   request.quiet = arguments.quiet;
 }
 
+void checkBackground(const SceneArguments& arguments, const SceneRequest& request,
+                     const raster::PictureFormat& format) {
+  if (request.background && request.background->a < 255 && !format.alpha)
+    refuse(fmt::format("--background {}: {} has no alpha channel", *arguments.background, format.name));
+}
+
 bool isBuiltin(const std::string& input) {
   return input.starts_with("builtin:");
 }

@@ -8,6 +8,7 @@
 #include "cli/values.h"
 #include "core/task_pool.h"
 #include "pipeline/timing_report.h"
+#include "raster/image_io.h"
 #include "scenes/scene.h"
 
 namespace CLI {
@@ -71,6 +72,9 @@ void addCameraOptions(CLI::App& command, SceneArguments& arguments);
 
 /// Fills `request`. Throws Error(kUsage) that names the option and the reason.
 void understandScene(const SceneArguments& arguments, SceneRequest& request);
+
+/// Throws Error(kUsage) if the background can be seen through and the format of the picture has no alpha.
+void checkBackground(const SceneArguments& arguments, const SceneRequest& request, const raster::PictureFormat& format);
 
 bool isBuiltin(const std::string& input);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -85,6 +86,22 @@ double parseNumber(std::string_view option, std::string_view text, double min, d
   if (!value || !(*value >= min && *value <= max))
     refuse(option, text, fmt::format("a number from {} to {}", min, max));
   return *value;
+}
+
+std::vector<double> parseList(std::string_view option, std::string_view text, std::size_t least, std::size_t most,
+                              double min, double max) {
+  std::vector<double> values;
+  bool valid = true;
+  for (std::size_t begin = 0; valid && begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const auto value = toNumber<double>(text.substr(begin, end - begin));
+    valid = value && *value >= min && *value <= max;
+    values.push_back(value.value_or(0.0));
+    begin = end + 1;
+  }
+  if (!valid || values.size() < least || values.size() > most)
+    refuse(option, text, fmt::format("{} to {} numbers from {} to {}, with commas between", least, most, min, max));
+  return values;
 }
 
 DVec3 parseVector(std::string_view option, std::string_view text) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/image.h"
 #include "core/math.h"
@@ -22,6 +23,10 @@ Size parseSize(std::string_view option, std::string_view text);
 
 /// A finite number in [min, max].
 double parseNumber(std::string_view option, std::string_view text, double min, double max);
+
+/// `A,B,...`: at least `least` and at most `most` numbers in [min, max].
+std::vector<double> parseList(std::string_view option, std::string_view text, std::size_t least, std::size_t most,
+                              double min, double max);
 
 /// `X,Y,Z`, finite.
 DVec3 parseVector(std::string_view option, std::string_view text);

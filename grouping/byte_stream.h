@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -18,6 +19,11 @@ class ByteWriter {
   void put(const T& value) {
     static_assert(std::is_trivially_copyable_v<T>);
     bytes_.append(reinterpret_cast<const char*>(&value), sizeof(T));
+  }
+  template <class T>
+  void putAll(std::span<const T> values) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    bytes_.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
   }
   /// 7 bits to a byte, low ones first; the top bit says that more follow.
   void putVariable(std::uint32_t value) {
@@ -57,6 +63,12 @@ class ByteReader {
     T value{};
     if (const std::string_view raw = take(sizeof(T)); !raw.empty()) std::memcpy(&value, raw.data(), sizeof(T));
     return value;
+  }
+  template <class T>
+  void getAll(std::span<T> values) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    if (const std::string_view raw = take(values.size_bytes()); !raw.empty())
+      std::memcpy(values.data(), raw.data(), raw.size());
   }
   std::uint32_t getVariable() {
     std::uint32_t value = 0;

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "grouping/face_clusters.h"
@@ -45,6 +46,21 @@ struct SizeLimits {
 
 /// The largest clusters within the limits.
 ClusterCut cutBySize(const mesh::Mesh& mesh, const FaceClusters& clusters, const SizeLimits& limits);
+
+/// #F, the place in the cut of the cluster that has the face.
+std::vector<std::uint32_t> clusterOfFace(const FaceClusters& clusters, std::span<const std::uint32_t> cut);
+
+/// What a cut is like. All 0 for a mesh without faces.
+struct CutFigures {
+  std::uint32_t clusters = 0;
+  std::uint32_t least_faces = 0;   ///< of a cluster
+  std::uint32_t median_faces = 0;  ///< of as many as there are below as above, the larger one
+  std::uint32_t most_faces = 0;
+  double max_cost = 0.0;      ///< of any merge within the clusters, 0 if there is none
+  double max_distance = 0.0;  ///< of a corner to the plane of its cluster, object space
+  double rms_distance = 0.0;  ///< of all corners of all faces
+};
+CutFigures figuresOf(const mesh::Mesh& mesh, const FaceClusters& clusters, std::span<const std::uint32_t> cut);
 
 /// Counts the different vertices of sets of faces of one mesh. Not to be shared between threads.
 class VertexCounter {

@@ -1,7 +1,6 @@
 #include "grouping/groups_file.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cassert>
@@ -11,25 +10,13 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "grouping/byte_stream.h"
+#include "grouping/sealed_file.h"
 
 namespace sheaf::grouping {
 namespace {
 
-constexpr std::string_view kMagic = "SHEAFGRP";
-constexpr std::size_t kHeaderBytes = 8 + 4 + 8 + 4;  // magic, version, size of the rest, checksum
+constexpr FileKind kFileKind = {"SHEAFGRP", kGroupsFileVersion, "vertex groups"};
 constexpr int kMaxParameterBits = 24;
-
-// Header, with the checksum last: it covers the bytes before and after it.
-std::uint32_t checksum(std::string_view before, std::string_view after) {
-  const auto add = [](uLong crc, std::string_view bytes) {
-    for (std::size_t i = 0; i < bytes.size(); i += 1U << 30U) {
-      const std::string_view part = bytes.substr(i, 1U << 30U);
-      crc = crc32(crc, reinterpret_cast<const Bytef*>(part.data()), static_cast<uInt>(part.size()));
-    }
-    return crc;
-  };
-  return static_cast<std::uint32_t>(add(add(crc32(0, nullptr, 0), before), after));
-}
 
 // The n-bit code of a parameter in [lo, hi], and back. Both ends of the range are kept exactly.
 struct Quantiser {
@@ -269,37 +256,11 @@ class Decoder {
 
 std::string encodeGroups(const VertexGroups& groups, const GroupsFileOptions& options) {
   assert(options.parameter_bits >= 0 && options.parameter_bits <= kMaxParameterBits);
-  const std::string content = encodeContent(groups, options.parameter_bits);
-  std::string bytes(kMagic);
-  ByteWriter header;
-  header.put(kGroupsFileVersion);
-  header.put(static_cast<std::uint64_t>(content.size()));
-  bytes += header.take();
-  ByteWriter sum;
-  sum.put(checksum(bytes, content));
-  return bytes + sum.take() + content;
+  return sealed(kFileKind, encodeContent(groups, options.parameter_bits));
 }
 
 VertexGroups decodeGroups(std::string_view bytes, std::string_view name) {
-  const auto refuse = [&](ErrorCode code, std::string_view reason) {
-    throw Error(code, fmt::format("{}: {}", name, reason));
-  };
-  if (!bytes.starts_with(kMagic)) refuse(ErrorCode::kBadInput, "is not a file of vertex groups");
-  if (bytes.size() < kHeaderBytes) refuse(ErrorCode::kBadInput, "ends within its header");
-  ByteReader header(bytes.substr(kMagic.size()));
-  const auto version = header.get<std::uint32_t>();
-  const auto size = header.get<std::uint64_t>();
-  const auto expected = header.get<std::uint32_t>();
-  if (version != kGroupsFileVersion)
-    refuse(ErrorCode::kUnsupported,
-           fmt::format("has version {} of vertex groups, this reads version {}", version, kGroupsFileVersion));
-  const std::string_view content = bytes.substr(kHeaderBytes);
-  if (size != content.size())
-    refuse(ErrorCode::kBadInput, fmt::format("has {} bytes of vertex groups in place of {}", content.size(), size));
-  const std::uint32_t found = checksum(bytes.substr(0, kHeaderBytes - sizeof expected), content);
-  if (found != expected)
-    refuse(ErrorCode::kBadInput, fmt::format("is damaged: checksum {:08x} in place of {:08x}", found, expected));
-  return Decoder(content, name).decode();
+  return Decoder(unsealed(kFileKind, bytes, name), name).decode();
 }
 
 void saveGroups(const std::filesystem::path& path, const VertexGroups& groups, const GroupsFileOptions& options) {

@@ -1,35 +1,12 @@
-// [E05] Ericson, Real-Time Collision Detection, 2005.
 #include "mesh/distance.h"
 
 #include <cassert>
 #include <numeric>
 
+#include "mesh/triangle_queries.h"
+
 namespace sheaf::mesh {
 namespace {
-
-using Corners = std::array<DVec3, 3>;
-
-// [E05] §5.1.5, by Voronoi regions; a triangle without area answers with its corners and edges.
-DVec3 closestPoint(const Corners& t, const DVec3& p) {
-  const DVec3 ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0];
-  const double d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
-  if (d1 <= 0.0 && d2 <= 0.0) return t[0];
-  const DVec3 bp = p - t[1];
-  const double d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp);
-  if (d3 >= 0.0 && d4 <= d3) return t[1];
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return t[0] + ab * (d1 > d3 ? d1 / (d1 - d3) : 0.0);
-  const DVec3 cp = p - t[2];
-  const double d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
-  if (d6 >= 0.0 && d5 <= d6) return t[2];
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return t[0] + ac * (d2 > d6 ? d2 / (d2 - d6) : 0.0);
-  const double va = d3 * d6 - d5 * d4, along = d4 - d3, back = d5 - d6;
-  if (va <= 0.0 && along >= 0.0 && back >= 0.0)
-    return t[1] + (t[2] - t[1]) * (along + back > 0.0 ? along / (along + back) : 0.0);
-  const double sum = va + vb + vc;
-  return sum > 0.0 ? t[0] + ab * (vb / sum) + ac * (vc / sum) : t[0];
-}
 
 double squaredLength(const DVec3& v) {
   return glm::dot(v, v);

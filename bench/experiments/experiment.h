@@ -37,6 +37,8 @@ std::string writeFigure7(Context& context);
 std::string writeAverages(Context& context);
 std::string writePlanes(Context& context);
 std::string writeSearch(Context& context);
+// clustering.cpp
+std::string writeClustering(Context& context);
 // growth.cpp
 std::string writeGrowth(Context& context);
 std::string writeSimplification(Context& context);

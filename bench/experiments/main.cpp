@@ -50,6 +50,7 @@ const std::vector<Section>& sections() {
       {"storage", "Storage", writeStorage},
       {"beyond", "Normals, texture coordinates, moving vertices", writeBeyond},
       {"simplification", "Simplification", writeSimplification},
+      {"clustering", "Hierarchical face clustering", writeClustering},
   };
   return all;
 }

@@ -90,6 +90,17 @@ TEST_CASE("cli/values: a fraction is written as such or as a percentage, and is 
   }
 }
 
+TEST_CASE("cli/values: a list has as many numbers as are wanted, each in its range") {
+  CHECK(parseList("--weights", "1,0.5,+2", 3, 4, 0.0, 10.0) == std::vector<double>{1.0, 0.5, 2.0});
+  CHECK(parseList("--weights", "1,1,0,10", 3, 4, 0.0, 10.0).size() == 4);
+  for (const char* text :
+       {"", "1,1", "1,1,1,1,1", "1,1,1,", ",1,1,1", "1,,1,1", "1,1,-1", "1,1,11", "1,1,nan", "1, 1,1"}) {
+    CAPTURE(text);
+    CHECK_THROWS_WITH_AS(parseList("--weights", text, 3, 4, 0.0, 10.0),
+                         doctest::Contains("3 to 4 numbers from 0 to 10"), Error);
+  }
+}
+
 TEST_CASE("cli/values: whole numbers keep to their range") {
   CHECK(parseWhole("--vertices", "3000", 1, 5000) == 3000);
   CHECK(parseWhole("--vertices", "+1", 1, 5000) == 1);

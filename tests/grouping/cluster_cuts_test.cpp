@@ -130,8 +130,43 @@ TEST_CASE("grouping/cluster_cuts: balanced clusters fill a size limit, chains do
   CHECK(balanced * 128 < 3 * chains.clusters.faceCount());
 }
 
+TEST_CASE("grouping/cluster_cuts: figures of a cut are those of its clusters one by one") {
+  const auto [mesh, clusters] = makeFixture();
+  for (const std::uint32_t count : {2U, 30U, 700U, 100000U}) {
+    CAPTURE(count);
+    const ClusterCut cut = cutByCount(clusters, count);
+    const CutFigures figures = figuresOf(mesh, clusters, cut);
+    const std::vector<std::uint32_t> cluster_of_face = clusterOfFace(clusters, cut);
+    std::vector<std::uint32_t> sizes(cut.size(), 0);
+    for (const std::uint32_t c : cluster_of_face) ++sizes.at(c);
+    double max_distance = 0.0, squares = 0.0;
+    for (std::uint32_t c = 0; c < cut.size(); ++c) {
+      CHECK(sizes[c] == clusters.faceCountOf(cut[c]));
+      CHECK(cluster_of_face[clusters.facesOf(cut[c]).front()] == c);
+      const ClusterShape shape = shapeOfFaces(mesh, clusters.facesOf(cut[c]));
+      max_distance = std::max(max_distance, double{shape.maxDistance()});
+      squares += std::pow(shape.rms_distance, 2) * sizes[c];
+    }
+    std::ranges::sort(sizes);
+    CHECK(figures.clusters == cut.size());
+    CHECK(figures.least_faces == sizes.front());
+    CHECK(figures.median_faces == sizes[sizes.size() / 2]);
+    CHECK(figures.most_faces == sizes.back());
+    CHECK(figures.max_distance == doctest::Approx(max_distance).epsilon(1e-5));
+    CHECK(figures.rms_distance == doctest::Approx(std::sqrt(squares / clusters.faceCount())).epsilon(1e-5));
+    // No merge within costs more, and one costs as much.
+    if (cut.size() == clusters.faceCount()) {
+      CHECK(figures.max_cost == 0.0);
+    } else {
+      CHECK(cutByCost(clusters, figures.max_cost).size() <= cut.size());
+      CHECK(cutByCost(clusters, std::nextafter(figures.max_cost, -10.0)) != cut);
+    }
+  }
+}
+
 TEST_CASE("grouping/cluster_cuts: of nothing there is nothing") {
   const FaceClusters none;
+  CHECK(figuresOf({}, none, {}).clusters == 0);
   CHECK(cutByCount(none, 5).empty());
   CHECK(cutByCost(none, 1.0).empty());
   CHECK(cutByPlanarity({}, none, Planarity::kMax, 1.0).empty());

@@ -2,7 +2,6 @@
 
 #include <doctest/doctest.h>
 #include <unistd.h>
-#include <zlib.h>
 
 #include <cstring>
 #include <limits>
@@ -10,22 +9,11 @@
 #include "core/error.h"
 #include "grouping/linear_groups.h"
 #include "grouping/planar_groups.h"
+#include "tests/grouping/reseal.h"
 #include "tests/grouping/shapes.h"
 
 namespace sheaf::grouping {
 namespace {
-
-constexpr std::size_t kChecksumAt = 20, kContentAt = 24;
-
-// A damaged file whose checksum has been put right.
-std::string resealed(std::string bytes) {
-  const auto* raw = reinterpret_cast<const Bytef*>(bytes.data());
-  uLong crc = crc32(crc32(0, nullptr, 0), raw, kChecksumAt);
-  crc = crc32(crc, raw + kContentAt, static_cast<uInt>(bytes.size() - kContentAt));
-  const auto sum = static_cast<std::uint32_t>(crc);
-  std::memcpy(bytes.data() + kChecksumAt, &sum, sizeof sum);
-  return bytes;
-}
 
 std::vector<VertexGroups> assortedGroups() {
   std::mt19937 rng(0xf11e);

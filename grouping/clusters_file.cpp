@@ -1,0 +1,124 @@
+#include "grouping/clusters_file.h"
+
+#include <fmt/format.h>
+
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "grouping/byte_stream.h"
+#include "grouping/sealed_file.h"
+
+namespace sheaf::grouping {
+namespace {
+
+constexpr FileKind kFileKind = {"SHEAFCLU", kClustersFileVersion, "face clusters"};
+
+// Padding would write bytes of no meaning, and other ones each time.
+static_assert(sizeof(ClusterShape) == 27 * sizeof(float));
+
+std::string encodeContent(const FaceClusters& clusters) {
+  std::vector<std::uint32_t> place(clusters.nodeCount(), kNoIndex);
+  for (std::uint32_t i = 0; i < clusters.children.size(); ++i)
+    for (std::uint32_t side = 0; side < 2; ++side) place[clusters.children[i][side]] = 2 * i + side;
+  ByteWriter out;
+  out.put(clusters.faceCount());
+  out.put(static_cast<std::uint32_t>(clusters.children.size()));
+  out.putAll(std::span<const std::uint32_t>(place));
+  out.putAll(std::span<const float>(clusters.cost));
+  for (const std::uint32_t index : clusters.shape_index) out.putBits(index != kNoIndex ? 1U : 0U, 1);
+  out.alignBits();
+  out.putAll(std::span<const ClusterShape>(clusters.shapes));
+  return out.take();
+}
+
+// Reads the content. Every refusal goes through fail(); counts are held against the bytes that are left before any
+// memory is taken for them.
+class Decoder {
+ public:
+  Decoder(std::string_view content, std::string_view name) : in_(content), name_(name) {}
+
+  FaceClusters decode() {
+    faces_ = in_.get<std::uint32_t>();
+    merges_ = in_.get<std::uint32_t>();
+    if (std::uint64_t{faces_} + 2 * std::uint64_t{merges_} > in_.left() / 4) fail("more faces than bytes");
+    std::vector<std::array<std::uint32_t, 2>> children = getChildren();
+    std::vector<float> cost(merges_);
+    in_.getAll(std::span(cost));
+    for (const float c : cost)
+      if (std::isnan(c)) fail("a cost is no number");
+    FaceClusters out = hierarchyOf(faces_, std::move(children), std::move(cost));
+    getShapes(out);
+    if (in_.failed()) fail("ends too early");
+    if (in_.left() > 0) fail(fmt::format("{} bytes too many", in_.left()));
+    return out;
+  }
+
+ private:
+  [[noreturn]] void fail(std::string_view reason) const {
+    throw Error(ErrorCode::kBadInput, fmt::format("{}: damaged face clusters: {}", name_, reason));
+  }
+
+  std::vector<std::array<std::uint32_t, 2>> getChildren() {
+    std::vector<std::uint32_t> place(std::size_t{faces_} + merges_);
+    in_.getAll(std::span(place));
+    std::vector<std::array<std::uint32_t, 2>> children(merges_, {kNoIndex, kNoIndex});
+    for (std::uint32_t node = 0; node < place.size(); ++node) {
+      if (place[node] == kNoIndex) continue;
+      const std::uint32_t merge = place[node] / 2, side = place[node] % 2;
+      if (merge >= merges_) fail(fmt::format("node {} is in merge {} of {}", node, merge, merges_));
+      if (children[merge][side] != kNoIndex) fail(fmt::format("merge {} has more than two parts", merge));
+      children[merge][side] = node;
+    }
+    // A part that is missing is kNoIndex and so no node below.
+    if (const std::string reason = findBrokenMerge(faces_, children); !reason.empty()) fail(reason);
+    return children;
+  }
+
+  void getShapes(FaceClusters& out) {
+    std::uint32_t count = 0;
+    out.shape_index.assign(merges_, kNoIndex);
+    for (std::uint32_t& index : out.shape_index)
+      if (in_.getBits(1) != 0) index = count++;
+    in_.alignBits();
+    if (count > in_.left() / sizeof(ClusterShape)) fail("more shapes than bytes");
+    out.shapes.resize(count);
+    in_.getAll(std::span(out.shapes));
+    for (std::uint32_t i = 0; i < count; ++i)
+      if (!isSound(out.shapes[i])) fail(fmt::format("shape {} is not possible", i));
+    // The bits stand in the order of the merges, the shapes depth first.
+    std::uint32_t next = 0;
+    walkDown(out, [&](std::uint32_t node) {
+      if (out.storedShape(node) != nullptr) out.shape_index[node - faces_] = next++;
+      return !out.isFace(node);
+    });
+  }
+
+  ByteReader in_;
+  std::string_view name_;
+  std::uint32_t faces_ = 0;
+  std::uint32_t merges_ = 0;
+};
+
+}  // namespace
+
+std::string encodeClusters(const FaceClusters& clusters) {
+  assert(clusters.shape_index.size() == clusters.children.size());
+  return sealed(kFileKind, encodeContent(clusters));
+}
+
+FaceClusters decodeClusters(std::string_view bytes, std::string_view name) {
+  return Decoder(unsealed(kFileKind, bytes, name), name).decode();
+}
+
+void saveClusters(const std::filesystem::path& path, const FaceClusters& clusters) {
+  writeFile(path, encodeClusters(clusters));
+}
+
+FaceClusters loadClusters(const std::filesystem::path& path) {
+  return decodeClusters(readFile(path, false), path.string());
+}
+
+}  // namespace sheaf::grouping

@@ -1,0 +1,140 @@
+#include "grouping/clusters_file.h"
+
+#include <doctest/doctest.h>
+
+#include <limits>
+
+#include "core/error.h"
+#include "tests/grouping/reseal.h"
+#include "tests/grouping/shapes.h"
+#include "tests/temp_folder.h"
+
+namespace sheaf::grouping {
+namespace {
+
+constexpr std::size_t kPlacesAt = kContentAt + 8;
+
+FaceClusters clustersOf(const mesh::Mesh& mesh) {
+  TaskPool pool(1);
+  return clusterFaces(mesh, {}, pool);
+}
+
+// 18 faces in one tree, with two shapes or so, and two faces by themselves.
+FaceClusters smallClusters() {
+  std::mt19937 rng(0xf1c1);
+  mesh::Mesh mesh = hills(rng, 4);
+  const auto first = static_cast<std::uint32_t>(mesh.vertexCount());
+  for (const float x : {3.0F, 4.0F, 5.0F, 6.0F, 7.0F, 8.0F}) mesh.positions.emplace_back(x, x * x, 0.0F);
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  mesh.triangles.push_back({first + 3, first + 4, first + 5});
+  return clustersOf(mesh);
+}
+
+template <typename Value>
+std::string overwritten(std::string bytes, std::size_t at, Value value) {
+  std::memcpy(bytes.data() + at, &value, sizeof value);
+  return resealed(bytes);
+}
+
+// Whatever is let through must keep every promise.
+void checkRefusedOrSound(const std::string& bytes) {
+  try {
+    const FaceClusters clusters = decodeClusters(bytes, "x");
+    CHECK(findInconsistency(clusters) == "");
+  } catch (const Error& e) {
+    CHECK(e.code() == ErrorCode::kBadInput);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("grouping/clusters_file: what is loaded equals what was saved") {
+  std::mt19937 rng(0xf1c2);
+  mesh::Mesh one;
+  one.positions = {{0.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}};
+  one.triangles = {{0, 1, 2}};
+  for (const mesh::Mesh& mesh :
+       {lumpyBall(rng, 30, 40, 0.01F), hills(rng, 25), triangleSoup(rng, 40, 200), one, mesh::Mesh{}}) {
+    const FaceClusters clusters = clustersOf(mesh);
+    CHECK(decodeClusters(encodeClusters(clusters), "x") == clusters);
+  }
+  const TempFolder folder;
+  saveClusters(folder.file("a.sheaf"), smallClusters());
+  CHECK(loadClusters(folder.file("a.sheaf")) == smallClusters());
+}
+
+TEST_CASE("grouping/clusters_file: a file with any byte changed is refused") {
+  const std::string bytes = encodeClusters(smallClusters());
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    for (const int flip : {0x01, 0x80, 0xFF}) {
+      std::string damaged = bytes;
+      damaged[i] = static_cast<char>(damaged[i] ^ flip);
+      CHECK_THROWS_AS(decodeClusters(damaged, "x"), Error);
+    }
+}
+
+TEST_CASE("grouping/clusters_file: a forged file is refused or sound") {
+  const std::string bytes = encodeClusters(smallClusters());
+  for (std::size_t i = kContentAt; i < bytes.size(); ++i)
+    for (int flip = 1; flip < 256; flip = 2 * flip + 1) {
+      CAPTURE(i);
+      std::string damaged = bytes;
+      damaged[i] = static_cast<char>(damaged[i] ^ flip);
+      checkRefusedOrSound(resealed(damaged));
+    }
+  std::mt19937 rng(0xf1c3);
+  for (int round = 0; round < 3000; ++round) {
+    CAPTURE(round);
+    std::string damaged = bytes;
+    for (int k = 0; k < 3; ++k) damaged[kContentAt + rng() % (bytes.size() - kContentAt)] = static_cast<char>(rng());
+    checkRefusedOrSound(resealed(damaged));
+  }
+}
+
+TEST_CASE("grouping/clusters_file: a truncated or extended file is refused, sealed anew or not") {
+  const std::string bytes = encodeClusters(smallClusters());
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    CAPTURE(size);
+    const std::string cut = bytes.substr(0, size);
+    CHECK_THROWS_AS(decodeClusters(cut, "x"), Error);
+    if (size < kContentAt) continue;
+    const std::string shorter = overwritten(cut, 12, static_cast<std::uint64_t>(size - kContentAt));
+    CHECK_THROWS_AS(decodeClusters(shorter, "x"), Error);
+  }
+  const std::string longer = overwritten(bytes + '\0', 12, static_cast<std::uint64_t>(bytes.size() + 1 - kContentAt));
+  CHECK_THROWS_WITH_AS(decodeClusters(longer, "x"), "x: damaged face clusters: 1 bytes too many", Error);
+}
+
+TEST_CASE("grouping/clusters_file: refusals name the file and the reason") {
+  const FaceClusters clusters = smallClusters();
+  const std::string bytes = encodeClusters(clusters);
+  const auto refusal = [](const std::string& damaged) -> std::string {
+    try {
+      decodeClusters(damaged, "a.sheaf");
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const std::uint32_t faces = clusters.faceCount(), merges = static_cast<std::uint32_t>(clusters.children.size());
+  REQUIRE(faces == 20);
+  const std::size_t costs_at = kPlacesAt + 4 * clusters.nodeCount(), shapes_at = bytes.size() - sizeof(ClusterShape);
+  CHECK(refusal("SHEAFGRP" + bytes.substr(8)) == "a.sheaf: is not a file of face clusters");
+  CHECK(refusal(overwritten(bytes, 8, 9U)) == "a.sheaf: has version 9 of face clusters, this reads version 1");
+  CHECK(refusal(overwritten(bytes, kContentAt, 0x7FFFFFFFU)) ==
+        "a.sheaf: damaged face clusters: more faces than bytes");
+  CHECK(refusal(overwritten(bytes, kContentAt + 4, 0xFFFFFFFFU)) ==
+        "a.sheaf: damaged face clusters: more faces than bytes");
+  CHECK(refusal(overwritten(bytes, kPlacesAt, 2 * merges)).find("node 0 is in merge 17 of 17") != std::string::npos);
+  // The node that is twice there takes the place of another.
+  std::uint32_t second = 0;
+  std::memcpy(&second, bytes.data() + kPlacesAt + 4, sizeof second);
+  CHECK(refusal(overwritten(bytes, kPlacesAt, second)).find("has more than two parts") != std::string::npos);
+  CHECK(refusal(overwritten(bytes, kPlacesAt, kNoIndex)).find("takes node") != std::string::npos);
+  CHECK(refusal(overwritten(bytes, costs_at, std::numeric_limits<float>::quiet_NaN())) ==
+        "a.sheaf: damaged face clusters: a cost is no number");
+  CHECK(refusal(overwritten(bytes, shapes_at, std::numeric_limits<float>::infinity())).find("is not possible") !=
+        std::string::npos);
+}
+
+}  // namespace sheaf::grouping

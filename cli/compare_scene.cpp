@@ -24,7 +24,7 @@ void checkBeforehand(const SceneCompareRequest& request) {
   checkOutputs({{"-o", request.output}, {"--report", request.report}}, inputFiles(request));
   if (request.output.empty()) return;
   raster::checkFormatAvailable(request.output);
-  const int width = 3 * request.size.width;
+  const int width = 3 * request.size.width + 2 * pipeline::kSideBySideGapPx;
   if (width > raster::kMaxReadSide)
     throw Error(ErrorCode::kUsage, fmt::format("-o: three pictures of {} pixels side by side are too wide: choose a "
                                                "smaller --size",

@@ -123,20 +123,26 @@ std::optional<Eigenpair> lonePositive(const Sym3& m) {
   return Eigenpair{value, vector};
 }
 
-// The smallest matrix that is above both m and d I; neither is above the other.
-Sym3 upperBound(const Sym3& m, double d) {
-  // m - d I has eigenvalues of both signs. Its determinant tells which sign only one of them has.
-  const Sym3 above = lessOnDiagonal(m, d);
+// eps^2 times the inverse of the smallest matrix that is above both `a` and `floor` I, where neither is above the
+// other.
+Sym3 partlyLimitedReach(const Sym3& a, double eps, double floor, double r_max2) {
+  // a - floor I has eigenvalues of both signs. Its determinant tells which sign only one of them has.
+  const Sym3 above = lessOnDiagonal(a, floor);
   const bool one_is_positive = above.determinant() > 0.0;
   const std::optional<Eigenpair> lone = lonePositive(one_is_positive ? above : scaled(above, -1.0));
   if (!lone) {
-    Eigen3 e = eigenDecomposition(m);
-    for (int k = 0; k < 3; ++k) e.values[k] = std::max(e.values[k], d);
+    Eigen3 e = eigenDecomposition(a);
+    for (int k = 0; k < 3; ++k) e.values[k] = std::min(eps * eps / e.values[k], r_max2);
     return compose(e);
   }
-  Sym3 bound = one_is_positive ? Sym3::scaledIdentity(d) : m;
+  if (one_is_positive) {  // a sphere, flattened along the vector
+    Sym3 reach = Sym3::scaledIdentity(r_max2);
+    reach.addOuter(lone->vector, eps * eps / (floor + lone->value) - r_max2);
+    return reach;
+  }
+  Sym3 bound = a;
   bound.addOuter(lone->vector, lone->value);
-  return bound;
+  return scaled(inverse(bound), eps * eps);
 }
 
 // R with no half-axis above r_max, given as its square. Many vertices need no eigenvectors: either every half-axis is
@@ -146,7 +152,8 @@ Sym3 limitedReach(const Sym3& a, double eps, double r_max2) {
   const double floor = eps * eps / r_max2;
   const Sym3 above = lessOnDiagonal(a, floor);
   if (a.trace() <= floor || isPositiveDefinite(scaled(above, -1.0))) return Sym3::scaledIdentity(r_max2);
-  return scaled(inverse(isPositiveDefinite(above) ? a : upperBound(a, floor)), eps * eps);
+  if (isPositiveDefinite(above)) return scaled(inverse(a), eps * eps);
+  return partlyLimitedReach(a, eps, floor, r_max2);
 }
 
 std::vector<Sym3> safeEllipsoids(const mesh::Mesh& mesh, double eps) {

@@ -10,6 +10,8 @@ namespace sheaf::grouping {
 namespace {
 
 constexpr std::size_t kMaxVertices = 256, kMaxTriangles = 512;
+// Stretches of at least so many vertices are worth beginning at a cache line.
+constexpr std::uint32_t kLongStretch = 64;
 
 std::uint32_t alignedCount(std::uint32_t count) {
   return (count + kRunAlignment - 1) / kRunAlignment * kRunAlignment;
@@ -233,7 +235,7 @@ class PatchFiller {
 
 // x, y, z of every slot, padding included.
 void fillBySlot(std::span<const Vec3> positions, const PatchSet& set, TaskPool& pool, VertexRuns& out) {
-  out.full_stride = set.vertex_source.size();
+  out.full_stride = set.vertex_source.size();  // a multiple of kRunAlignment
   out.full.resize(3 * out.full_stride + kRunAlignment);
   forPatches(set.patches.size(), pool, [&](std::size_t p) {
     const std::uint32_t begin = set.patches[p].first_vertex;
@@ -250,16 +252,21 @@ bool joinRuns(const std::vector<std::vector<VertexRun>>& runs, VertexRuns& out) 
   std::uint32_t full = 0, parameters = 0;
   out.patches.resize(runs.size());
   for (std::size_t p = 0; p < runs.size(); ++p) {
+    std::uint32_t full_here = 0, parameters_here = 0;
+    for (const VertexRun& run : runs[p]) (run.kind == RunKind::kFull ? full_here : parameters_here) += run.vertex_count;
+    if (full_here >= kLongStretch) full = alignedCount(full);
+    if (parameters_here >= kLongStretch) parameters = alignedCount(parameters);
     PatchRuns& at = out.patches[p];
     at.first_run = static_cast<std::uint32_t>(out.runs.size());
     at.run_count = static_cast<std::uint32_t>(runs[p].size());
     at.first_full = full;
     at.first_parameter = parameters;
-    for (const VertexRun& run : runs[p]) (run.kind == RunKind::kFull ? full : parameters) += run.vertex_count;
+    full += full_here;
+    parameters += parameters_here;
     out.runs.insert(out.runs.end(), runs[p].begin(), runs[p].end());
   }
   if (parameters == 0) return true;
-  out.full_stride = full;
+  out.full_stride = alignedCount(full);
   out.full.resize(3 * out.full_stride + kRunAlignment);
   if (out.form == ParameterForm::k16Bit)
     out.quantised.resize(std::size_t{parameters} + kRunAlignment);
@@ -268,9 +275,8 @@ bool joinRuns(const std::vector<std::vector<VertexRun>>& runs, VertexRuns& out) 
   return false;
 }
 
-template <typename T>
-std::uint64_t bytesOf(const std::vector<T>& v) {
-  return v.size() * sizeof(T);
+std::uint64_t bytesOf(const auto& v) {
+  return v.size() * sizeof(v[0]);
 }
 
 }  // namespace

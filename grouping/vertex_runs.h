@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/aligned.h"
 #include "core/math.h"
 #include "core/task_pool.h"
 #include "grouping/patches.h"
@@ -73,12 +74,13 @@ struct VertexRuns {
   std::vector<VertexRun> runs;     ///< by patch: full ones, planes, lines
   std::vector<RunLine> lines;
   /// Vertices stored in full: all x, then all y, then all z, full_stride apart, so that each is one stream of memory
-  /// from patch to patch. Where nothing is grouped they are indexed as PatchSet::vertex_source, padding included.
-  std::vector<float> full;
+  /// from patch to patch, and long stretches begin a cache line. Where nothing is grouped they are indexed as
+  /// PatchSet::vertex_source, padding included.
+  AlignedVector<float> full;
   std::size_t full_stride = 0;
   /// Form k16Bit: s in the lower half, t in the upper one, so that a patch is one stream of memory; lines have t = 0.
-  std::vector<std::uint32_t> quantised;
-  std::vector<Vec2> parameters;  ///< form kFloat: (s, t)
+  AlignedVector<std::uint32_t> quantised;
+  AlignedVector<Vec2> parameters;  ///< form kFloat: (s, t)
   ParameterForm form = ParameterForm::k16Bit;
   float step = 1.0F;  ///< of 16-bit coordinates on planes; a power of two
 

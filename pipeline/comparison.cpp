@@ -11,7 +11,6 @@
 namespace sheaf::pipeline {
 namespace {
 
-constexpr int kGapPx = 8;  ///< between pictures side by side
 constexpr Rgba8 kGapColor{128, 128, 128, 255};
 
 /// The same scene, prepared in three ways.
@@ -131,11 +130,11 @@ Comparison compareGrouping(const scenes::Scene& scene, std::span<const scenes::C
 Image8 sideBySide(const Comparison& comparison) {
   const Image8 heat = raster::heatMap(comparison.original, comparison.grouped);
   const int width = heat.width();
-  Image8 picture(3 * width + 2 * kGapPx, heat.height(), kGapColor);
+  Image8 picture(3 * width + 2 * kSideBySideGapPx, heat.height(), kGapColor);
   int x = 0;
   for (const Image8* part : {&comparison.original, &comparison.grouped, &heat}) {
     for (int y = 0; y < heat.height(); ++y) std::copy_n(part->row(y), width, picture.row(y) + x);
-    x += width + kGapPx;
+    x += width + kSideBySideGapPx;
   }
   return picture;
 }

@@ -79,8 +79,10 @@ struct Comparison {
 Comparison compareGrouping(const scenes::Scene& scene, std::span<const scenes::Camera> cameras,
                            GroupingOptions grouping, RenderSettings settings, TaskPool& pool);
 
-/// The three pictures of the worst view side by side: original, grouped, heat map of their difference
-/// (raster::heatMap).
+inline constexpr int kSideBySideGapPx = 8;
+
+/// The three pictures of the worst view side by side, with gaps between: original, grouped, heat map of their
+/// difference (raster::heatMap).
 Image8 sideBySide(const Comparison& comparison);
 
 }  // namespace sheaf::pipeline

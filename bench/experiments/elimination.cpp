@@ -261,11 +261,9 @@ std::string writePlanes(Context& context) {
   }
   return table.text() +
          "[PG] 6: planes that are not aligned with the axes, among them those of a dodecahedron, eliminate \"very few "
-         "additional vertices\" and have no tangible benefit. True of 1000 vertices and more. Below 600 they eliminate "
-         "a "
-         "few points more; six directions cost six transformed vectors a frame in place of none, since the images of "
-         "the "
-         "axes are the columns of the matrix.\n\n";
+         "additional vertices\" and have no tangible benefit. True of 1000 vertices and more. Up to 600 they eliminate "
+         "a few points more; six planes cost twelve transformed vectors a frame in place of none, since the images of "
+         "the axes are the columns of the matrix.\n\n";
 }
 
 std::string writeSearch(Context& context) {

@@ -52,6 +52,17 @@ std::string writeFigure10(Context& context);
 std::string writeCosts(Context& context);
 std::string writeStorage(Context& context);
 std::string writeBeyond(Context& context);
+// scalar.cpp, clipping.cpp, texcoords.cpp
+std::string writeScalar(Context& context);
+std::string writeScalarTimes(Context& context);
+std::string writeClipping(Context& context);
+std::string writeTexcoordTransforms(Context& context);
+// stage.cpp
+std::string writeKernels(Context& context);
+std::string writeLarge(Context& context);
+std::string writeSweep(Context& context);
+std::string writeVisible(Context& context);
+std::string writeFrames(Context& context);
 
 /// Writes a file below docs/experiments and returns the Markdown that shows it.
 std::string showPicture(Context& context, const std::string& file, const Image8& picture, const std::string& caption);

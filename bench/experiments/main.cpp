@@ -5,15 +5,26 @@
 #include <exception>
 #include <stdexcept>
 #include <string_view>
+#include <thread>
 
 #include "bench/experiments/experiment.h"
+#include "cli/build_info.h"
 #include "core/file.h"
 #include "raster/image_io.h"
 
 namespace sheaf::experiments {
+namespace {
+
+std::string writeMachine(Context&) {
+  return fmt::format("{}, {} processors; {}.\n\n", cli::cpuModel(), std::thread::hardware_concurrency(),
+                     cli::buildText());
+}
+
+}  // namespace
 
 const std::vector<Section>& sections() {
   static const std::vector<Section> all = {
+      {"machine", "Machine", writeMachine},
       {"models", "Models", writeModels},
       {"table1", "Table 1: vertices eliminated and time", writeTable1},
       {"figure7", "Figure 7: elimination and vertex count", writeFigure7},
@@ -27,6 +38,15 @@ const std::vector<Section>& sections() {
       {"planes", "Planes that are not aligned with the axes", writePlanes},
       {"search", "Greedy and better search", writeSearch},
       {"costs", "Operation counts", writeCosts},
+      {"scalar", "Transforms without vectors: instructions", writeScalar},
+      {"scalar-times", "Transforms without vectors: time", writeScalarTimes},
+      {"clipping", "Clipping by group without vectors", writeClipping},
+      {"kernels", "What bounds the vector kernels", writeKernels},
+      {"large", "Transform and clipping of large meshes", writeLarge},
+      {"sweep", "Transform and clipping from 300 vertices up", writeSweep},
+      {"visible", "A part of the mesh in view", writeVisible},
+      {"frames", "Whole frames", writeFrames},
+      {"texcoords", "Transforming and generating texture coordinates", writeTexcoordTransforms},
       {"storage", "Storage", writeStorage},
       {"beyond", "Normals, texture coordinates, moving vertices", writeBeyond},
       {"simplification", "Simplification", writeSimplification},

@@ -1,7 +1,6 @@
 #include "bench/experiments/models.h"
 
 #include <algorithm>
-#include <vector>
 
 #include "core/stage_timer.h"
 #include "mesh/simplify.h"
@@ -68,15 +67,24 @@ const mesh::Mesh& Models::lod(const std::string& name, std::size_t vertices) {
   return entry->second;
 }
 
-double medianMs(int runs, const std::function<void()>& call) {
-  std::vector<double> times;
-  for (int i = 0; i <= runs; ++i) {
-    const std::int64_t begin_ns = nowNs();
-    call();
-    if (i > 0) times.push_back(1e-6 * static_cast<double>(nowNs() - begin_ns));
+std::vector<double> mediansInTurns(int runs, const std::vector<std::function<void()>>& calls) {
+  std::vector<std::vector<double>> times(calls.size());
+  for (int i = 0; i <= runs; ++i)
+    for (std::size_t c = 0; c < calls.size(); ++c) {
+      const std::int64_t begin_ns = nowNs();
+      calls[c]();
+      if (i > 0) times[c].push_back(1e-6 * static_cast<double>(nowNs() - begin_ns));
+    }
+  std::vector<double> medians;
+  for (std::vector<double>& t : times) {
+    std::nth_element(t.begin(), t.begin() + runs / 2, t.end());
+    medians.push_back(t[static_cast<std::size_t>(runs / 2)]);
   }
-  std::nth_element(times.begin(), times.begin() + runs / 2, times.end());
-  return times[static_cast<std::size_t>(runs / 2)];
+  return medians;
+}
+
+double medianMs(int runs, const std::function<void()>& call) {
+  return mediansInTurns(runs, {call}).front();
 }
 
 }  // namespace sheaf::experiments

@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "mesh/mesh.h"
 
@@ -27,7 +28,10 @@ class Models {
   std::map<std::pair<std::string, std::size_t>, mesh::Mesh> made_;
 };
 
-/// Median time of a call in ms, after one call that does not count.
+/// Median times in ms of several calls made in turns, so that a noisy machine's slow minutes fall on all of them; after
+/// one turn that does not count.
+std::vector<double> mediansInTurns(int runs, const std::vector<std::function<void()>>& calls);
+/// The same of one call.
 double medianMs(int runs, const std::function<void()>& call);
 
 }  // namespace sheaf::experiments

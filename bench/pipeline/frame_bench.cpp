@@ -6,19 +6,16 @@
 #include <vector>
 
 #include "bench/memory_bandwidth.h"
+#include "bench/pipeline/frame_loop.h"
 #include "core/task_pool.h"
 #include "pipeline/cull.h"
 #include "pipeline/prepare.h"
-#include "pipeline/renderer.h"
 #include "pipeline/transform.h"
 #include "scenes/builtin.h"
 #include "scenes/camera.h"
 
 namespace sheaf::pipeline {
 namespace {
-
-constexpr int kWidth = 1920;
-constexpr int kHeight = 1080;
 
 // 12 bytes read per vertex, the rest stays in the first-level cache: about 35 vector instructions per vector of
 // vertices, so that it is bound by instructions up to some 10 GB/s.
@@ -33,7 +30,7 @@ void transformAndProject(benchmark::State& state) {
   }
   Mat4 clip_from_object(1.0F);
   clip_from_object[3] = {0.1F, 0.2F, 0.3F, 2.0F};
-  const Viewport viewport(kWidth, kHeight);
+  const Viewport viewport(kBenchWidth, kBenchHeight);
   static ProjectedVertices projected;
   for (auto _ : state)
     for (const grouping::PatchRuns& patch : vertices.patches) {
@@ -67,7 +64,7 @@ ItemBytes frameBytes(const Counters& counters) {
                         sizeof(raster::BinEntry) * static_cast<double>(counters.bin_entries);
   return {.read = vertices * (3 * sizeof(float) + sizeof(raster::VertexNormal)) +
                   3.0 * static_cast<double>(counters.triangles_assembled) + binned,
-          .write = binned + sizeof(Rgba8) * kWidth * kHeight};
+          .write = binned + sizeof(Rgba8) * kBenchWidth * kBenchHeight};
 }
 
 // Whole frames with the times of their stages (cpu, summed over threads) as counters, and the time that one thread
@@ -75,29 +72,16 @@ ItemBytes frameBytes(const Counters& counters) {
 void drawFrame(benchmark::State& state, const Load& load, int threads) {
   TaskPool pool(threads);
   scenes::Scene scene = scenes::buildBuiltin(load.spec);
-  const double aspect = static_cast<double>(kWidth) / kHeight;
+  const double aspect = static_cast<double>(kBenchWidth) / kBenchHeight;
   scenes::Camera camera = scene.cameras.empty()
                               ? scenes::fitCamera(scene, scenes::namedView("iso"), aspect, radians(40.0), false)
                               : scene.cameras.front();
   camera = scenes::fitClipPlanes(camera, scenes::boundsOf(scene));
   if (scene.lights.empty()) scenes::addDefaultLights(scene, camera);
   const PreparedScene prepared = prepareScene(std::move(scene), pool);
-  Renderer renderer(pool);
-  RenderSettings settings;
-  settings.width = kWidth;
-  settings.height = kHeight;
-  settings.cull_patches = load.cull;
-  Frame frame;
-  renderer.render(prepared, camera, settings, frame);
-  StageTimes cpu;
-  for (auto _ : state) {
-    renderer.render(prepared, camera, settings, frame);
-    cpu += frame.cpu;
-  }
-  for (const Stage stage :
-       {Stage::kCull, Stage::kTransform, Stage::kClip, Stage::kSetupBin, Stage::kRaster, Stage::kShade})
-    state.counters[std::string(kStageNames[static_cast<std::size_t>(stage)]) + "_ms"] =
-        benchmark::Counter(static_cast<double>(cpu[stage]) / 1e6, benchmark::Counter::kAvgIterations);
+  constexpr std::array kStages = {Stage::kCull,     Stage::kTransform, Stage::kClip,
+                                  Stage::kSetupBin, Stage::kRaster,    Stage::kShade};
+  const Frame frame = repeatFrame(state, prepared, camera, load.cull, kStages, pool);
   state.counters["binned"] = static_cast<double>(frame.counters.triangles_binned);
   state.counters["pixels"] = static_cast<double>(frame.counters.pixels_shaded);
   state.counters["memory_ms"] = 1e3 * memorySeconds(frameBytes(frame.counters));

@@ -4,8 +4,8 @@
 #include <array>
 #include <string>
 
+#include "bench/pipeline/frame_loop.h"
 #include "core/task_pool.h"
-#include "pipeline/renderer.h"
 #include "pipeline/transform.h"
 #include "scenes/builtin.h"
 #include "scenes/camera.h"
@@ -76,10 +76,9 @@ constexpr std::array<Way, 5> kWays = {{{"classic", false, Grouping::kNone, false
 
 // CPU time of the stages, one thread. `closeness` 0: the whole scene in view; towards 1: the eye near the middle.
 void drawFrame(benchmark::State& state, const Load& load, const Way& way, double closeness) {
-  constexpr int kWidth = 1920, kHeight = 1080;
   TaskPool pool(1);
   scenes::Scene scene = scenes::buildBuiltin(load.spec);
-  const double aspect = static_cast<double>(kWidth) / kHeight;
+  const double aspect = static_cast<double>(kBenchWidth) / kBenchHeight;
   scenes::Camera camera = scenes::fitCamera(scene, scenes::namedView("iso"), aspect, radians(40.0), false);
   const Box3 box = scenes::boundsOf(scene);
   camera.eye = glm::mix(camera.eye, camera.target, closeness);
@@ -90,21 +89,8 @@ void drawFrame(benchmark::State& state, const Load& load, const Way& way, double
   options.use_groups = way.use_groups;
   options.form = way.form;
   const PreparedScene prepared = prepareScene(std::move(scene), pool, options);
-  Renderer renderer(pool);
-  RenderSettings settings;
-  settings.width = kWidth;
-  settings.height = kHeight;
-  settings.cull_patches = way.cull;
-  Frame frame;
-  renderer.render(prepared, camera, settings, frame);
-  StageTimes cpu;
-  for (auto _ : state) {
-    renderer.render(prepared, camera, settings, frame);
-    cpu += frame.cpu;
-  }
-  for (const Stage stage : {Stage::kCull, Stage::kTransform, Stage::kClip, Stage::kSetupBin})
-    state.counters[std::string(kStageNames[static_cast<std::size_t>(stage)]) + "_ms"] =
-        benchmark::Counter(static_cast<double>(cpu[stage]) / 1e6, benchmark::Counter::kAvgIterations);
+  constexpr std::array kStages = {Stage::kCull, Stage::kTransform, Stage::kClip, Stage::kSetupBin};
+  const Frame frame = repeatFrame(state, prepared, camera, way.cull, kStages, pool);
   const PreparedMesh& mesh = prepared.meshes[0];
   state.counters["bytes/vertex"] = static_cast<double>(mesh.vertexBytes()) / static_cast<double>(mesh.vertex_count);
   state.counters["runs/patch"] =

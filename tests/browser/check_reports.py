@@ -174,6 +174,20 @@ def faults_of_events(events, page):
                 yield f"loads {url}"
 
 
+def missed_by_checks(browser, folder):
+    """Faults that a page made to have them all is not found to have."""
+    path = folder / "faulty.html"
+    path.write_text("""<!DOCTYPE html><body style="background: white"><div style="width: 2000px">wide</div>
+        <img alt="lost" src="no-such-picture.png"><div class="lines"></div><script>console.error("oh"); undefined.f();
+        </script></body>""", encoding="utf-8")
+    browser.open(path, *SIZES["phone"], "dark")
+    found = browser.evaluate(LOOK.replace("EXPECTED_CHARTS", "0"))
+    found += faults_of_events(browser.events, path)
+    wanted = ["pixels wide", "sticks out", "is not shown", "1 charts", "a chart is missing", "colour scheme"]
+    wanted += ["console:", "exception:", "loads file:"]
+    return [want for want in wanted if not any(want in fault for fault in found)]
+
+
 def make_reports(sheaf, folder):
     for name, arguments in REPORTS.items():
         path = folder / f"{name}.html"
@@ -187,6 +201,9 @@ def check(sheaf, chromium, folder, keep):
     faults = 0
     with tempfile.TemporaryDirectory(prefix="sheaf-chromium-", ignore_cleanup_errors=True) as profile:
         browser = Browser(chromium, profile)
+        for missed in missed_by_checks(browser, folder):
+            print(f"the checks do not find: {missed}")
+            faults += 1
         for name, path in make_reports(sheaf, folder):
             for size, (width, height, mobile) in SIZES.items():
                 for scheme in SCHEMES:

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "grouping/naive_groups.h"
+#include "grouping/quadric.h"
 #include "tests/grouping/shapes.h"
 
 namespace sheaf::grouping {
@@ -202,6 +203,46 @@ TEST_CASE("grouping/linear_groups: texture coordinates become a flat mesh") {
   LinearOptions options;
   options.dimensions = 2;
   CHECK(groupLinear(flat, options).stats.grouped == 1);
+}
+
+TEST_CASE("grouping/linear_groups: quadric members lie at the least error along their line, within epsilon squared") {
+  std::mt19937 rng(0x11e9);
+  for (const Limit limit : {Limit::kSafe, Limit::kPaper})
+    for (const mesh::Mesh& mesh : {lumpyBall(rng, 16, 20, 0.01F), hills(rng, 18)}) {
+      LinearOptions options;
+      options.metric = Metric::kQuadric;
+      options.limit = limit;
+      options.epsilon = 0.02;
+      const VertexGroups groups = groupLinear(mesh, options);
+      REQUIRE(groups.stats.grouped > 0);
+      const std::vector<Sym3> ellipsoids = vertexEllipsoids(mesh, groups.epsilon * groups.extent, limit);
+      for (const std::uint32_t v : groups.members) {
+        CAPTURE(v);
+        const Sym3 a = inverse(ellipsoids[v]);  // errors in units of epsilon squared
+        const DVec3 x = DVec3(groups.positions[v]) - DVec3(mesh.positions[v]);
+        const DVec3 along = glm::normalize(DVec3(groups.groups[groups.owner[v]].axis_s));
+        const double error = glm::dot(x, a.times(x)), curvature = glm::dot(along, a.times(along));
+        CHECK(error <= 1.01);  // the slack is for float positions against thin ellipsoids
+        // What moving on to the very minimum would still gain.
+        const double slope = glm::dot(along, a.times(x));
+        CHECK(slope * slope / curvature <= 1e-2);
+      }
+    }
+}
+
+TEST_CASE("grouping/linear_groups: vertices that no face uses are left alone and not counted") {
+  std::mt19937 rng(0x11ea);
+  mesh::Mesh mesh = lumpyBall(rng, 10, 12);
+  const auto used = static_cast<std::uint32_t>(mesh.vertexCount());
+  const VertexGroups without = groupLinear(mesh, {});
+  mesh.positions.push_back({5.0F, 5.0F, 5.0F});
+  mesh.positions.push_back({std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F});
+  const VertexGroups with = groupLinear(mesh, {});
+  CHECK(with.stats.vertices == used);
+  CHECK(with.state[used] == VertexState::kUnused);
+  CHECK(with.positions[used] == Vec3(5.0F));
+  CHECK(with.groups == without.groups);
+  CHECK(with.members == without.members);
 }
 
 }  // namespace sheaf::grouping

@@ -2,7 +2,11 @@
 
 #include <doctest/doctest.h>
 
+#include <numeric>
+
 #include "grouping/open_edges.h"
+#include "grouping/plane_sets.h"
+#include "grouping/slabs.h"
 #include "tests/grouping/shapes.h"
 
 namespace sheaf::grouping {
@@ -214,6 +218,68 @@ TEST_CASE("grouping/quadric: faces without area") {
   CHECK(safe[5] == Sym3::scaledIdentity(1e-4));  // no face: the distance metric
   const std::vector<Sym3> paper = vertexEllipsoids(mesh, 0.01, Limit::kPaper);
   for (const Sym3& r : paper) CHECK(r.determinant() > 0.0);
+}
+
+TEST_CASE("grouping/quadric: a slab is as wide as the ellipsoid, across any plane") {
+  std::mt19937 rng(0x9a0a);
+  const std::vector<PlaneFrame> planes = axisAndDodecahedronPlanes();
+  const std::uint32_t in_use[] = {0};
+  const Vec3 at_origin[] = {Vec3(0.0F)};
+  for (int i = 0; i < 50; ++i) {
+    CAPTURE(i);
+    const Sym3 a = randomQuadric(rng);
+    const double eps = 0.01 + 0.1 * std::abs(randomVector(rng).x);
+    const Eigen3 e = eigenDecomposition(a);
+    const Sym3 reach[] = {compose({eps * eps / e.values, e.vectors})};
+    const Slabs slabs = makeSlabs(at_origin, in_use, planes, eps, reach);
+    for (std::uint32_t axis = 0; axis < planes.size(); ++axis) {
+      const DVec3 n(planes[axis].normal);
+      const double half = slabs.halfOf(0, axis);
+      // The farthest point is on the ellipsoid, and no point of it is farther.
+      const DVec3 farthest = placeOnPlane(n, reach[0].times(n), half);
+      CHECK(errorAt(a, farthest) == doctest::Approx(eps * eps).epsilon(1e-5));
+      for (int k = 0; k < 40; ++k) {
+        const DVec3 on_sphere = glm::normalize(randomVector(rng));
+        DVec3 x(0.0);
+        for (int c = 0; c < 3; ++c) x += eps / std::sqrt(e.values[c]) * on_sphere[c] * e.vectors[c];
+        CHECK(std::abs(glm::dot(n, x)) <= half * (1.0 + 1e-6));
+      }
+    }
+  }
+}
+
+TEST_CASE("grouping/quadric: spheres of radius epsilon make the slabs and the table of the distance metric") {
+  std::mt19937 rng(0x9a0b);
+  const mesh::Mesh mesh = randomPoints(rng, 300);
+  std::vector<std::uint32_t> in_use(mesh.vertexCount());
+  std::iota(in_use.begin(), in_use.end(), 0U);
+  for (const double eps : {0.0, 0.003, 0.05}) {
+    const std::vector<Sym3> spheres(mesh.vertexCount(), Sym3::scaledIdentity(eps * eps));
+    const Slabs distance = makeSlabs(mesh.positions, in_use, axisPlanes(), eps, {});
+    const Slabs quadric = makeSlabs(mesh.positions, in_use, axisPlanes(), eps, spheres);
+    for (const float half : quadric.half) CHECK(half == distance.common_half);
+    CHECK(unionKeys(quadric) == unionKeys(distance));
+    CHECK(sumKeys(quadric) == sumKeys(distance));
+  }
+}
+
+TEST_CASE("grouping/quadric: a border's heavy planes do not make its vertices degenerate") {
+  std::mt19937 rng(0x9a0c);
+  mesh::Mesh mesh = hills(rng, 12);  // and with straight borders
+  for (Vec3& p : mesh.positions) p = Vec3(std::floor(12.0F * p.x), 12.0F * p.y, std::floor(12.0F * p.z));
+  const std::vector<Sym3> light = vertexQuadrics(mesh, 1.0), heavy = vertexQuadrics(mesh, kBoundaryWeight);
+  const double eps = 1e-5;  // far below any edge, so that the limit changes nothing
+  const std::vector<Sym3> ellipsoids = vertexEllipsoids(mesh, eps, Limit::kPaper);
+  int misleading = 0;
+  for (const OpenEdge& edge : findOpenEdges(mesh)) {
+    const DVec3 sound = eigenDecomposition(light[edge.a]).values, seen = eigenDecomposition(heavy[edge.a]).values;
+    REQUIRE(sound[2] > kDegenerateRatio * sound[0]);
+    misleading += seen[2] <= kDegenerateRatio * seen[0];
+    Eigen3 expected = eigenDecomposition(heavy[edge.a]);
+    expected.values = eps * eps / expected.values;
+    CHECK(largestDifference(ellipsoids[edge.a], compose(expected)) <= 1e-9 * eps * eps / seen[2]);
+  }
+  CHECK(misleading > 0);  // by the weighted planes they would have been
 }
 
 }  // namespace sheaf::grouping

@@ -205,12 +205,12 @@ TEST_CASE("pipeline/comparison: side by side stand original, grouped and heat ma
   comparison.grouped.at(1, 2) = {200, 20, 30, 255};
   const Image8 picture = sideBySide(comparison);
   REQUIRE(picture.height() == 3);
-  REQUIRE(picture.width() == 3 * 4 + 2 * 8);
+  REQUIRE(picture.width() == 3 * 4 + 2 * kSideBySideGapPx);
   CHECK(picture.at(1, 2) == comparison.original.at(1, 2));
-  CHECK(picture.at(4 + 8 + 1, 2) == comparison.grouped.at(1, 2));
+  CHECK(picture.at(4 + kSideBySideGapPx + 1, 2) == comparison.grouped.at(1, 2));
   const Image8 heat = raster::heatMap(comparison.original, comparison.grouped);
-  CHECK(picture.at(2 * (4 + 8) + 1, 2) == heat.at(1, 2));
-  CHECK(picture.at(2 * (4 + 8) + 3, 0) == heat.at(3, 0));
+  CHECK(picture.at(2 * (4 + kSideBySideGapPx) + 1, 2) == heat.at(1, 2));
+  CHECK(picture.at(2 * (4 + kSideBySideGapPx) + 3, 0) == heat.at(3, 0));
 }
 
 }  // namespace sheaf::pipeline

@@ -14,9 +14,6 @@ namespace {
 constexpr int kWidth = 131;
 constexpr int kHeight = 97;
 
-const char* const kScenes[] = {"gallery",      "teapot?n=6",    "sphere?n=20", "torusknot?u=90&v=16",
-                               "terrain?n=65", "city?blocks=3", "cornell?n=6", "fill?layers=5&order=shuffled"};
-
 GroupingOptions planar(double epsilon, ParameterForm form = ParameterForm::k16Bit) {
   GroupingOptions options;
   options.method = Grouping::kPlanar;
@@ -61,7 +58,7 @@ std::vector<scenes::Camera> camerasFor(const scenes::Scene& scene) {
 TEST_CASE("pipeline/grouped: by planes, grouped and ungrouped drawing of the snapped mesh are the same bytes") {
   TaskPool pool(2);
   std::uint64_t grouped_vertices = 0, outside = 0, inside = 0;
-  for (const char* spec : kScenes) {
+  for (const char* spec : kSmallScenes) {
     CAPTURE(spec);
     const scenes::Scene scene = scenes::buildBuiltin(spec);
     const std::vector<scenes::Camera> cameras = camerasFor(scene);

@@ -14,9 +14,6 @@ namespace {
 constexpr int kWidth = 131;
 constexpr int kHeight = 97;
 
-const char* const kScenes[] = {"gallery",      "teapot?n=6",    "sphere?n=20", "torusknot?u=90&v=16",
-                               "terrain?n=65", "city?blocks=3", "cornell?n=6", "fill?layers=5&order=shuffled"};
-
 // A square of side 2 about the origin that looks towards +Z, two triangles.
 scenes::Scene squareScene() {
   scenes::Scene scene;
@@ -54,7 +51,7 @@ Frame draw(const PreparedScene& scene, const scenes::Camera& camera, TaskPool& p
 }  // namespace
 
 TEST_CASE("pipeline/renderer: every SIMD target and thread count draws the same bytes") {
-  for (const char* spec : kScenes) {
+  for (const char* spec : kSmallScenes) {
     CAPTURE(spec);
     TaskPool one(1);
     const ReadyScene ready = makeReady(spec, kWidth, kHeight, one);
@@ -85,7 +82,7 @@ TEST_CASE("pipeline/renderer: preparing with any number of threads gives the sam
 
 TEST_CASE("pipeline/renderer: culling patches changes the work and not the picture, from outside and from within") {
   TaskPool pool(2);
-  for (const char* spec : kScenes) {
+  for (const char* spec : kSmallScenes) {
     CAPTURE(spec);
     scenes::Scene scene = scenes::buildBuiltin(spec);
     const scenes::Camera outside = usualCamera(scene, static_cast<double>(kWidth) / kHeight);
@@ -105,7 +102,7 @@ TEST_CASE("pipeline/renderer: culling patches changes the work and not the pictu
 
 TEST_CASE("pipeline/renderer: every triangle and every pixel is accounted for") {
   TaskPool pool(2);
-  for (const char* spec : kScenes) {
+  for (const char* spec : kSmallScenes) {
     CAPTURE(spec);
     scenes::Scene scene = scenes::buildBuiltin(spec);
     const scenes::Camera inside = insideCamera(scene);

@@ -12,6 +12,11 @@
 
 namespace sheaf::pipeline {
 
+/// Every built-in scene, of few triangles.
+inline constexpr const char* kSmallScenes[] = {
+    "gallery",      "teapot?n=6",    "sphere?n=20", "torusknot?u=90&v=16",
+    "terrain?n=65", "city?blocks=3", "cornell?n=6", "fill?layers=5&order=shuffled"};
+
 struct ReadyScene {
   PreparedScene prepared;
   scenes::Camera camera;

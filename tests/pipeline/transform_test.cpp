@@ -42,7 +42,8 @@ std::vector<float> randomFloats(std::mt19937& rng, std::size_t count) {
 
 OneRun fullRun(std::mt19937& rng, std::uint32_t count) {
   OneRun one(count);
-  one.vertices.full = randomFloats(rng, std::size_t{3} * count);
+  const std::vector<float> floats = randomFloats(rng, std::size_t{3} * count);
+  one.vertices.full.assign(floats.begin(), floats.end());
   return one;
 }
 
@@ -87,7 +88,7 @@ TEST_CASE("pipeline/transform: every SIMD target equals the references, bit for 
       std::int32_t any = 0;
       for (std::uint32_t v = 0; v < count; ++v) {
         CAPTURE(v);
-        const std::vector<float>& full = one.vertices.full;
+        const AlignedVector<float>& full = one.vertices.full;
         const Vec3 position(full[v], full[v + count], full[v + 2 * count]);
         const Vec4 expected = transformVertex(position, clip_from_object);
         checkBits(clip, v, expected);
@@ -177,6 +178,40 @@ TEST_CASE("pipeline/transform: a vertex on a plane comes out as if it had been t
     ClipVertices clip;
     transformRun(runs, runs.patches[0], run, RunStart(patch), 0, 1, clip_from_object, clip);
     checkBits(clip, 0, transformVertex(position, clip_from_object));
+  }
+}
+
+TEST_CASE("pipeline/transform: a vertex on a line comes out within eight roundings of its full transform") {
+  std::mt19937 rng(80);
+  std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+  const auto vec3 = [&] {
+    const float x = unit(rng), y = unit(rng), z = unit(rng);
+    return Vec3(x, y, z);
+  };
+  for (int i = 0; i < 2000; ++i) {
+    CAPTURE(i);
+    OneRun one(1);
+    one.run().kind = grouping::RunKind::kLine;
+    one.run().line = 0;
+    one.vertices.lines = {{100.0F * vec3(), vec3(), 4.0F * unit(rng), 1e-4F * std::abs(unit(rng))}};
+    const grouping::RunLine& line = one.vertices.lines[0];
+    const std::uint32_t step = rng() & 0xFFFFU;
+    one.vertices.quantised.assign(1 + grouping::kRunAlignment, step);
+    const Mat4 clip_from_object = randomMatrix(rng);
+    ClipVertices clip;
+    transformWhole(one, 1, clip_from_object, clip);
+    const double s = double{line.s0} + step * double{line.ds};
+    for (int row = 0; row < 4; ++row) {
+      double exact = clip_from_object[3][row], magnitude = std::abs(exact);
+      for (int k = 0; k < 3; ++k) {
+        const double m = clip_from_object[k][row];
+        exact += m * (line.base[k] + s * line.direction[k]);
+        magnitude += std::abs(m) * (std::abs(line.base[k]) +
+                                    (std::abs(line.s0) + step * double{line.ds}) * std::abs(double{line.direction[k]}));
+      }
+      const float found[] = {clip.x[0], clip.y[0], clip.z[0], clip.w[0]};
+      CHECK(std::abs(found[row] - exact) <= 8.0 * std::exp2(-24.0) * magnitude);
+    }
   }
 }
 

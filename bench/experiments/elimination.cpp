@@ -177,7 +177,7 @@ std::string writeFigure7(Context& context) {
   constexpr std::array<std::size_t, 10> kCounts = {50, 100, 150, 300, 600, 1000, 1500, 2000, 2900, 5000};
   Chart chart{.title = "Vertices eliminated (%), planar, epsilon 0.5 %",
               .x = {"vertices", true, {50, 100, 200, 500, 1000, 2000, 5000, 10000, 40000}},
-              .y = {"eliminated %", false, {60, 65, 70, 75, 80, 85, 90, 95, 100}},
+              .y = {"eliminated %", false, {50, 55, 60, 65, 70, 75, 80, 85, 90, 95, 100}},
               .series = {}};
   Table table({"vertices", "cow %", "bunny %", "dragon %", "armadillo %"});
   std::vector<std::vector<std::string>> cells;

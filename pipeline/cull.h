@@ -23,7 +23,7 @@ struct View {
   Viewport viewport;
 };
 
-/// The tests of OutcodeVertex as linear functions of object space: x, y, z and constant coefficients of w + x, w - x,
+/// The tests of outcodeVertex() as linear functions of object space: x, y, z and constant coefficients of w + x, w - x,
 /// w + y, w - y, z, w - z, the four of the guard band, and w itself. A bit of Outcode belongs to each but the last,
 /// which stands in for kOutNear.
 struct alignas(64) RunPlanes {

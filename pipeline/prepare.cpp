@@ -105,8 +105,8 @@ grouping::VertexGroups findGroups(const mesh::Mesh& mesh, const GroupingOptions&
   return groupPlanar(mesh, planar);
 }
 
-// A run costs about 50 ns in a frame (its loops' ends are mispredicted, its last vector is half empty), a vertex in
-// full 0.9 ns and one on a plane 0.25 ns: shorter runs on a plane cost more than storing their vertices in full.
+// Fitted to frames of two scenes with 2.3 and 5.7 runs a patch: some 50 ns for each run, 0.9 ns for a vertex in full,
+// 0.25 ns for one on a plane. Shorter runs on a plane then cost more than storing their vertices in full.
 constexpr std::uint32_t kMinPlaneRun = 80;
 constexpr std::uint32_t kNoPlaneRuns = 1000;
 

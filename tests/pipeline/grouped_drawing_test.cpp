@@ -113,7 +113,9 @@ TEST_CASE("pipeline/grouped: every SIMD target and thread count draws the same b
   }
 }
 
-TEST_CASE("pipeline/grouped: at epsilon 0 on a mesh without common coordinates nothing changes") {
+TEST_CASE(
+    "pipeline/grouped: at epsilon 0 a mesh without common coordinates keeps its vertices and its picture but for the "
+    "grid") {
   TaskPool pool(2);
   scenes::Scene scene = scenes::buildBuiltin("teapot?n=6");
   std::uint32_t seed = 1;

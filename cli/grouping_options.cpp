@@ -15,8 +15,9 @@ void addGroupingOptions(CLI::App& command, GroupingArguments& a, pipeline::Group
   add("--grouping", a.grouping,
       may_be_none ? "Move vertices onto common lines or planes, by up to epsilon, and\ntransform them together: lossy "
                     "(default none)"
-                  : "Lines through two vertices, or planes through one (default planar)",
-      may_be_none ? "none|linear|planar" : "linear|planar");
+                  : "Lines through two vertices, planes across an axis, or planes of\npatches that are made of face "
+                    "clusters (default planar)",
+      may_be_none ? "none|linear|planar|cluster" : "linear|planar|cluster");
   add("--metric", a.metric,
       "What epsilon holds: how far a vertex moves, or the error of its\nquadric (default distance)",
       "distance|quadric");

@@ -23,13 +23,15 @@ struct View {
   Viewport viewport;
 };
 
-/// The tests of outcodeVertex() as linear functions of object space: x, y, z and constant coefficients of w + x, w - x,
-/// w + y, w - y, z, w - z, the four of the guard band, and w itself. A bit of Outcode belongs to each but the last,
-/// which stands in for kOutNear.
+/// The tests of outcodeVertex() as linear functions of a space that vertices are in: x, y, z and constant coefficients
+/// of w + x, w - x, w + y, w - y, z, w - z, the four of the guard band, and w itself. A bit of Outcode belongs to each
+/// but the last, which stands in for kOutNear.
 struct alignas(64) RunPlanes {
   static constexpr std::size_t kCount = 11;
   float coefficient[4][16];
 };
+
+RunPlanes runPlanes(const Mat4& clip_from_space, const Viewport& viewport);
 
 /// Of the sum of magnitudes: a bound of the rounding in a run's test and in the transform of its vertices.
 inline constexpr float kCodeSlack = 16.0F / (1 << 24);
@@ -41,8 +43,8 @@ struct InstanceView {
   /// by (near and far again, guard band).
   std::array<Vec4, 6> view_planes;
   std::array<Vec4, 4> guard_planes;
-  RunPlanes run_planes;
-  Vec4 eye_object;  ///< as View::eye_world
+  RunPlanes run_planes;  ///< of object space
+  Vec4 eye_object;       ///< as View::eye_world
   bool visible = true;
   bool mirrored = false;  ///< the transform turns the winding round
 };

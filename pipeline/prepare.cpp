@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "grouping/group_quality.h"
 #include "grouping/linear_groups.h"
+#include "grouping/patch_groups.h"
 #include "grouping/planar_groups.h"
 
 namespace sheaf::pipeline {
@@ -110,12 +111,24 @@ grouping::VertexGroups findGroups(const mesh::Mesh& mesh, const GroupingOptions&
 constexpr std::uint32_t kMinPlaneRun = 80;
 constexpr std::uint32_t kNoPlaneRuns = 1000;
 
+grouping::VertexGroups findPatchGroups(const mesh::Mesh& mesh, const grouping::PatchSet& set,
+                                       const GroupingOptions& options, TaskPool& pool) {
+  grouping::PatchGroupOptions patch_groups;
+  patch_groups.epsilon = options.epsilon;
+  patch_groups.metric = options.metric;
+  patch_groups.limit = options.limit;
+  patch_groups.min_members = kMinPlaneRun;
+  return groupInPatches(mesh, set, patch_groups, pool);
+}
+
 // Moves the mesh's vertices to where their groups put them and sorts the patches by group.
 void groupVertices(const GroupingOptions& options, mesh::Mesh& mesh, grouping::PatchSet& set, TaskPool& pool,
                    PreparedMesh& out, std::vector<std::string>& warnings) {
-  grouping::VertexGroups groups = findGroups(mesh, options);
+  const bool in_patches = options.method == Grouping::kCluster;
+  grouping::VertexGroups groups = in_patches ? findPatchGroups(mesh, set, options, pool) : findGroups(mesh, options);
   warnings.insert(warnings.end(), groups.warnings.begin(), groups.warnings.end());
-  const grouping::PlacedVertices placed = placeGrouped(mesh, groups, set, options.form);
+  const grouping::PlacedVertices placed =
+      in_patches ? placeInFrames(mesh, groups, set, options.form) : placeGrouped(mesh, groups, set, options.form);
   groups.positions = placed.positions;
   grouping::measure(mesh.positions, mesh.triangles, groups);
   out.grouping = groups.stats;

@@ -21,7 +21,12 @@
 
 namespace sheaf::pipeline {
 
-enum class Grouping : std::uint8_t { kNone, kLinear, kPlanar };
+enum class Grouping : std::uint8_t {
+  kNone,
+  kLinear,   ///< lines through two vertices
+  kPlanar,   ///< planes across an axis, of the whole mesh
+  kCluster,  ///< planes of patches that are made of face clusters
+};
 
 using grouping::ParameterForm;
 

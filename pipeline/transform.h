@@ -70,6 +70,9 @@ struct RunStart {
   }
 };
 
+/// Clip space from the space of a patch's planes: its frame, or else object space.
+Mat4 clipFromPlanes(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const Mat4& clip_from_object);
+
 /// All vertices of a patch straight to the screen: those in full by the matrix, others from their plane or line ([PG]
 /// eqs. 1, 2). For patches that need no clipping: clip coordinates do not leave the registers.
 void transformPatch(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const Mat4& clip_from_object,

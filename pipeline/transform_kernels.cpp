@@ -174,7 +174,7 @@ HWY_INLINE void TransformAnyRun(const grouping::VertexRuns& runs, const grouping
   if (run.kind == grouping::RunKind::kFull)
     TransformFull(runs.full.data() + start.full + begin, runs.full_stride, to, to_end, m, target);
   else if (run.kind == grouping::RunKind::kPlane)
-    TransformPlaneRun(runs, patch, run, start.parameter + begin, to, to_end, m, target);
+    TransformPlaneRun(runs, patch, run, start.parameter + begin, to, to_end, clipFromPlanes(runs, patch, m), target);
   else
     TransformLineRun(runs, run, start.parameter + begin, to, to_end, m, target);
 }

@@ -49,7 +49,7 @@ struct alignas(64) ClipVertices {
   float w[kVertexSlots];
 };
 
-/// Screen coordinates of a patch; meaningless where w <= 0.
+/// Screen coordinates of a patch; meaningless where w <= 0 and beyond the guard band.
 using ProjectedVertices = std::array<raster::ScreenVertex, kVertexSlots>;
 
 struct OutcodeSummary {

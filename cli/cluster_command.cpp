@@ -1,21 +1,20 @@
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <utility>
 
 #include "cli/build_info.h"
 #include "cli/cluster_options.h"
-#include "cli/cluster_picture.h"
 #include "cli/cluster_report.h"
+#include "cli/coloring.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/output.h"
-#include "core/error.h"
-#include "core/stage_timer.h"
+#include "cli/view.h"
 #include "grouping/cluster_colors.h"
 #include "grouping/clusters_file.h"
-#include "mesh/weld.h"
-#include "scenes/join.h"
+#include "pipeline/renderer.h"
+#include "raster/image_io.h"
+#include "scenes/camera.h"
 #include "scenes/painted_parts.h"
 #include "scenes/ply_writer.h"
 
@@ -23,70 +22,67 @@ namespace sheaf::cli {
 namespace {
 
 void checkBeforehand(const ClusterRequest& request) {
-  checkOutputs({{"-o", request.output}, {"--hierarchy", request.hierarchy}}, inputFiles(request));
+  std::vector<std::string> inputs = inputFiles(request);
+  if (!request.cut.from.empty()) inputs.push_back(request.cut.from);
+  checkOutputs({{"-o", request.output}, {"--hierarchy", request.hierarchy}}, inputs);
   if (request.is_picture) raster::checkFormatAvailable(request.output);
 }
 
-/// The surface alone: vertices that differ in what is not their place would tear it at seams.
-mesh::Mesh surfaceOf(const scenes::Scene& scene, const std::string& input) {
-  mesh::Mesh mesh = scenes::joinedMesh(scene);
-  if (mesh.triangles.empty()) throw Error(ErrorCode::kBadInput, fmt::format("{}: has no faces to cluster", input));
-  mesh.normals = {};
-  mesh.texcoords = {};
-  mesh.colors = {};
-  mesh::weldVertices(mesh);
-  return mesh;
+/// For a PLY or figures a mesh is as its file has it; a picture shows it as render does.
+scenes::Scene load(const ClusterRequest& request) {
+  if (request.is_picture) return importScene(request);
+  scenes::ImportOptions import;
+  import.for_drawing = false;
+  return scenes::loadScene(request.input, import);
 }
 
-grouping::ClusterCut cutAsAsked(const ClusterRequest& request, const mesh::Mesh& mesh,
-                                const grouping::FaceClusters& clusters) {
-  switch (request.cut) {
-    case CutBy::kCount:
-      return grouping::cutByCount(clusters, request.count);
-    case CutBy::kTolerance:
-      return grouping::cutByPlanarity(mesh, clusters, grouping::Planarity::kMax, request.tolerance);
-    case CutBy::kFaces:
-      return grouping::cutBySize(mesh, clusters, {.max_faces = request.count});
-  }
-  return {};
+void writePly(const std::string& path, const Clustering& c) {
+  const std::vector<std::uint32_t> colors = grouping::colorClusters(c.surface, c.clusters, c.cut, scenes::kPartColors);
+  scenes::writePly(path, scenes::paintedParts(c.surface, grouping::clusterOfFace(c.clusters, c.cut), colors));
 }
 
-void writeOutput(const ClusterRequest& request, const scenes::Scene& scene, mesh::Mesh mesh,
-                 const grouping::FaceClusters& clusters, const grouping::ClusterCut& cut, TaskPool& pool) {
-  const std::vector<std::uint32_t> cluster_of_face = grouping::clusterOfFace(clusters, cut);
-  const std::vector<std::uint32_t> colors = grouping::colorClusters(mesh, clusters, cut, scenes::kPartColors);
-  if (request.is_picture)
-    drawClusters(request, scene, std::move(mesh), cluster_of_face, colors, pool);
-  else
-    scenes::writePly(request.output, scenes::paintedParts(mesh, cluster_of_face, colors));
+void drawClusters(const ClusterRequest& request, const Clustering& clustering, scenes::Scene scene, TaskPool& pool) {
+  const scenes::Camera camera = chooseUnfittedCamera(scene, request.view, request.aspect());
+  if (scene.lights.empty()) scenes::addDefaultLights(scene, camera);
+  pipeline::RenderSettings settings;
+  settings.width = request.size.width;
+  settings.height = request.size.height;
+  settings.background = backgroundOf(request, scene);
+  settings.want_linear = settings.want_ids = true;
+  Box3 bounds = boundsOf(scene);
+  Coloring coloring(clustering, request.cut.overlay, scene);
+  pipeline::PreparedScene prepared = pipeline::prepareScene(std::move(scene), pool);
+  coloring.finish(prepared, bounds, pool);
+  pipeline::Frame frame;
+  pipeline::Renderer(pool).render(prepared, scenes::fitClipPlanes(camera, bounds), settings, frame);
+  coloring.apply(frame, pool);
+  const bool linear = raster::formatOf(request.output).linear;
+  raster::writePicture(request.output,
+                       {.srgb = linear ? nullptr : &frame.color, .linear = linear ? &frame.linear : nullptr}, pool);
 }
 
 int runCluster(const ClusterRequest& request) {
   checkBeforehand(request);
   if (request.simd) forceSimdTarget(*request.simd);
-  scenes::ImportOptions import;
-  import.for_drawing = false;
-  import.z_up = request.view.z_up;
-  const scenes::Scene scene = scenes::loadScene(request.input, import);
-  mesh::Mesh mesh = surfaceOf(scene, request.input);
-
   TaskPool pool(request.threads);
-  const std::int64_t begin_ns = nowNs();
-  const grouping::FaceClusters clusters = grouping::clusterFaces(mesh, {.weights = request.weights}, pool);
-  const double ms = 1e-6 * static_cast<double>(nowNs() - begin_ns);
-  const grouping::ClusterCut cut = cutAsAsked(request, mesh, clusters);
+  scenes::Scene scene = load(request);
+  const Clustering clustering = clusterScene(request.cut, scene, request.input, request.view.z_up, pool);
+  const mesh::Mesh& surface = clustering.surface;
   const ClusterReport report{.request = request,
                              .name = scene.name,
-                             .vertices = mesh.vertexCount(),
-                             .faces = mesh.triangleCount(),
-                             .components = clusters.roots.size(),
-                             .extent = double{mesh::boundsOf(mesh).longestEdge()},
-                             .figures = grouping::figuresOf(mesh, clusters, cut),
-                             .ms = ms,
+                             .vertices = surface.vertexCount(),
+                             .faces = surface.triangleCount(),
+                             .components = clustering.clusters.roots.size(),
+                             .extent = double{mesh::boundsOf(surface).longestEdge()},
+                             .figures = grouping::figuresOf(surface, clustering.clusters, clustering.cut),
+                             .ms = clustering.ms,
                              .warnings = scene.warnings};
   if (!request.quiet && !request.json) printWarnings(report.warnings);
-  if (!request.output.empty()) writeOutput(request, scene, std::move(mesh), clusters, cut, pool);
-  if (!request.hierarchy.empty()) grouping::saveClusters(request.hierarchy, clusters);
+  if (request.is_picture)
+    drawClusters(request, clustering, std::move(scene), pool);
+  else if (!request.output.empty())
+    writePly(request.output, clustering);
+  if (!request.hierarchy.empty()) grouping::saveClusters(request.hierarchy, clustering.clusters, surface);
   writeStdout(request.json ? clusterJson(report) : clusterText(report));
   return 0;
 }

@@ -17,7 +17,7 @@ struct ClusterReport {
   std::size_t components = 0;
   double extent = 0.0;  ///< longest edge of the mesh's box
   grouping::CutFigures figures;
-  double ms = 0.0;  ///< of clustering, without the cut
+  double ms = 0.0;  ///< of clustering or of loading the hierarchy, without the cut
   std::vector<std::string> warnings;
 };
 

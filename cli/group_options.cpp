@@ -39,18 +39,15 @@ constexpr const char* kFooter =
 }
 
 /// What only one method or metric knows.
-void refuseMismatches(const GroupArguments& arguments, GroupKind kind, Metric metric) {
+void refuseMismatches(const GroupArguments& arguments, GroupKind kind, const MetricChoice& choice) {
   if (kind == GroupKind::kLine) {
     if (arguments.planes) refuse("--planes is for planar groups: lines go through any two vertices");
     if (arguments.key) refuse("--key is for planar groups: the table of linear ones is sorted once, by its counts");
   } else if (arguments.segment_only) {
     refuse("--segment-only is for linear groups (--method linear)");
   }
-  if (metric == Metric::kDistance) {
-    if (arguments.limit) refuse("--limit is for the quadric metric: by distance no vertex moves beyond epsilon");
-  } else if (arguments.no_flips && arguments.limit.value_or("safe") == "safe") {
+  if (arguments.no_flips && choice.metric == Metric::kQuadric && choice.limit == Limit::kSafe)
     refuse("--no-flips: the safe limit of the quadric metric lets no face flip anyway");
-  }
   if (arguments.bits && !arguments.output) refuse("--bits is about the saved groups: add -o FILE.sheaf");
 }
 
@@ -79,14 +76,7 @@ std::string outputName(std::string_view option, const std::optional<std::string>
 void addSearchOptions(CLI::App& command, GroupArguments& a) {
   command.add_option("--method", a.method, "Lines through two vertices, or planes through one (default planar)")
       ->type_name("linear|planar");
-  command
-      .add_option("--metric", a.metric,
-                  "What epsilon holds: how far a vertex moves, or the error of its\nquadric (default distance)")
-      ->type_name("distance|quadric");
-  command
-      .add_option("--limit", a.limit,
-                  "Of the quadric metric: so that no face can fold over, or as\npublished (default safe)")
-      ->type_name("safe|paper");
+  addMetricOptions(command, a.metric);
   command.add_option("--epsilon", a.epsilon, "0.5% or 0.005 of the longest edge of the box (default 0.5%)")
       ->type_name("E");
   command
@@ -122,13 +112,12 @@ GroupRequest understand(const GroupArguments& arguments) {
   GroupRequest request;
   request.input = arguments.input;
   request.kind = choose("--method", arguments.method.value_or("planar"), kMethodNames);
-  const Metric metric = choose("--metric", arguments.metric.value_or("distance"), kMetricNames);
-  const Limit limit = choose("--limit", arguments.limit.value_or("safe"), kLimitNames);
+  const MetricChoice choice = understandMetric(arguments.metric);
   request.planar.key = choose("--key", arguments.key.value_or("auto"), kKeyNames);
-  refuseMismatches(arguments, request.kind, metric);
+  refuseMismatches(arguments, request.kind, choice);
   understandPlanes(arguments.planes.value_or("axis"), request);
-  request.planar.metric = request.linear.metric = metric;
-  request.planar.limit = request.linear.limit = limit;
+  request.planar.metric = request.linear.metric = choice.metric;
+  request.planar.limit = request.linear.limit = choice.limit;
   request.planar.epsilon = request.linear.epsilon = parseFraction("--epsilon", arguments.epsilon.value_or("0.5%"));
   request.planar.restore_flipped = request.linear.restore_flipped = arguments.no_flips;
   request.linear.segment_only = arguments.segment_only;

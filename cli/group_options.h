@@ -28,8 +28,7 @@ struct GroupArguments {
   using Text = std::optional<std::string>;
   std::string input;
   Text method;
-  Text metric;
-  Text limit;
+  MetricArguments metric;
   Text epsilon;
   Text planes;
   Text key;

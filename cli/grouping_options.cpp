@@ -7,6 +7,25 @@
 
 namespace sheaf::cli {
 
+std::array<CLI::Option*, 2> addMetricOptions(CLI::App& command, MetricArguments& a) {
+  return {command
+              .add_option("--metric", a.metric,
+                          "What epsilon holds: how far a vertex moves, or the error of its\nquadric (default distance)")
+              ->type_name("distance|quadric"),
+          command
+              .add_option("--limit", a.limit,
+                          "Of the quadric metric: so that no face can fold over, or as\npublished (default safe)")
+              ->type_name("safe|paper")};
+}
+
+MetricChoice understandMetric(const MetricArguments& arguments) {
+  const MetricChoice choice{choose("--metric", arguments.metric.value_or("distance"), kMetricNames),
+                            choose("--limit", arguments.limit.value_or("safe"), kLimitNames)};
+  if (arguments.limit && choice.metric == grouping::Metric::kDistance)
+    throw Error(ErrorCode::kUsage, "--limit is for the quadric metric: by distance no vertex moves beyond epsilon");
+  return choice;
+}
+
 void addGroupingOptions(CLI::App& command, GroupingArguments& a, pipeline::Grouping usual) {
   const auto add = [&](const char* name, auto& value, const std::string& meaning, const char* type) {
     command.add_option(name, value, meaning)->type_name(type)->group("Groups");
@@ -18,11 +37,7 @@ void addGroupingOptions(CLI::App& command, GroupingArguments& a, pipeline::Group
                   : "Lines through two vertices, planes across an axis, or planes of\npatches that are made of face "
                     "clusters (default planar)",
       may_be_none ? "none|linear|planar|cluster" : "linear|planar|cluster");
-  add("--metric", a.metric,
-      "What epsilon holds: how far a vertex moves, or the error of its\nquadric (default distance)",
-      "distance|quadric");
-  add("--limit", a.limit, "Of the quadric metric: so that no face can fold over, or as\npublished (default safe)",
-      "safe|paper");
+  for (CLI::Option* option : addMetricOptions(command, a.metric)) option->group("Groups");
   add("--epsilon", a.epsilon, "0.5% or 0.005 of the longest edge of each mesh's box (default 0.5%)", "E");
   add("--parameters", a.parameters, "How parameters on lines and planes are stored (default 16bit)", "16bit|float");
 }
@@ -33,20 +48,19 @@ pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments,
   if (options.method == pipeline::Grouping::kNone) {
     if (usual != pipeline::Grouping::kNone)
       throw Error(ErrorCode::kUsage, "--grouping none: without groups there is nothing to compare");
-    for (const auto& [given, option] : {std::pair{arguments.metric.has_value(), "--metric"},
-                                        {arguments.limit.has_value(), "--limit"},
+    for (const auto& [given, option] : {std::pair{arguments.metric.metric.has_value(), "--metric"},
+                                        {arguments.metric.limit.has_value(), "--limit"},
                                         {arguments.epsilon.has_value(), "--epsilon"},
                                         {arguments.parameters.has_value(), "--parameters"}})
       if (given)
         throw Error(ErrorCode::kUsage, fmt::format("{} is for grouped drawing: add --grouping planar", option));
     return options;
   }
-  options.metric = choose("--metric", arguments.metric.value_or("distance"), kMetricNames);
-  options.limit = choose("--limit", arguments.limit.value_or("safe"), kLimitNames);
+  const MetricChoice choice = understandMetric(arguments.metric);
+  options.metric = choice.metric;
+  options.limit = choice.limit;
   options.epsilon = parseFraction("--epsilon", arguments.epsilon.value_or("0.5%"));
   options.form = choose("--parameters", arguments.parameters.value_or("16bit"), kParameterNames);
-  if (arguments.limit && options.metric == grouping::Metric::kDistance)
-    throw Error(ErrorCode::kUsage, "--limit is for the quadric metric: by distance no vertex moves beyond epsilon");
   return options;
 }
 

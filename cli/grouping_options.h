@@ -1,6 +1,7 @@
 // cli/grouping_options: with which vertex groups a scene is drawn: the options that render, compare and bench share.
 #pragma once
 
+#include <array>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -10,7 +11,8 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace sheaf::cli {
 
@@ -25,11 +27,27 @@ inline constexpr Names<grouping::Limit, 2> kLimitNames = {
 inline constexpr Names<pipeline::ParameterForm, 2> kParameterNames = {
     {{"16bit", pipeline::ParameterForm::k16Bit}, {"float", pipeline::ParameterForm::kFloat}}};
 
+/// What epsilon holds, as it was written: of every command that groups, `sheaf group` too.
+struct MetricArguments {
+  std::optional<std::string> metric;
+  std::optional<std::string> limit;
+};
+
+struct MetricChoice {
+  grouping::Metric metric = grouping::Metric::kDistance;
+  grouping::Limit limit = grouping::Limit::kSafe;
+};
+
+/// --metric and --limit
+std::array<CLI::Option*, 2> addMetricOptions(CLI::App& command, MetricArguments& arguments);
+
+/// By distance unless asked otherwise. Throws Error(kUsage) that names the option.
+MetricChoice understandMetric(const MetricArguments& arguments);
+
 /// The options as they were written; absent ones are empty.
 struct GroupingArguments {
   std::optional<std::string> grouping;
-  std::optional<std::string> metric;
-  std::optional<std::string> limit;
+  MetricArguments metric;
   std::optional<std::string> epsilon;
   std::optional<std::string> parameters;
 };

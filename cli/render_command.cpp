@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "cli/build_info.h"
 #include "cli/commands.h"
@@ -30,8 +31,9 @@ bool outputIsLinear(const RenderRequest& request) {
 void checkBeforehand(const RenderRequest& request) {
   if (request.output == "-" && isatty(STDOUT_FILENO))
     throw Error(ErrorCode::kUsage, "-o -: standard output is a terminal; redirect it");
-  checkOutputs({{"-o", request.output}, {"--timings", request.timings_file}, {"--trace", request.trace_file}},
-               inputFiles(request));
+  std::vector<std::string> inputs = inputFiles(request);
+  if (!request.cut.from.empty()) inputs.push_back(request.cut.from);
+  checkOutputs({{"-o", request.output}, {"--timings", request.timings_file}, {"--trace", request.trace_file}}, inputs);
   if (!request.output.empty() && request.output != "-") raster::checkFormatAvailable(request.output);
 }
 
@@ -47,7 +49,8 @@ void toViewDistance(ImageF& depth, const scenes::Camera& camera) {
 
 void writeOutput(const RenderRequest& request, const scenes::Camera& camera, pipeline::Frame& frame, TaskPool& pool) {
   if (request.output == "-") return raster::encodePng(frame.color, pool, writeStdout);
-  raster::Picture picture{.srgb = &frame.color, .linear = frame.linear.empty() ? nullptr : &frame.linear};
+  const bool linear = outputIsLinear(request);  // a coloured picture is there in both forms
+  raster::Picture picture{.srgb = linear ? nullptr : &frame.color, .linear = linear ? &frame.linear : nullptr};
   if (request.want_depth) {
     toViewDistance(frame.depth, camera);
     picture.depth = &frame.depth;
@@ -73,6 +76,13 @@ void writeReports(const RenderRequest& request, const pipeline::RunTimes& run, c
     writeStdout(pipeline::formatTable(report));
 }
 
+/// Before the scene is prepared; takes the scene's colours.
+std::optional<Coloring> beginColoring(const RenderRequest& request, scenes::Scene& scene, TaskPool& pool) {
+  if (!request.color_by) return std::nullopt;
+  if (request.color_by != ColorBy::kCluster) return Coloring(*request.color_by, request.cut.overlay, scene);
+  return Coloring(clusterScene(request.cut, scene, request.input, request.view.z_up, pool), request.cut.overlay, scene);
+}
+
 int runRender(const RenderRequest& request) {
   pipeline::RunTimes run;
   run.begin_ns = nowNs();
@@ -83,7 +93,7 @@ int runRender(const RenderRequest& request) {
   scenes::Scene scene;
   run.import = pipeline::timePhase([&] { scene = importScene(request); });
   if (!request.quiet) printWarnings(scene.warnings);
-  const scenes::Camera camera = chooseCamera(scene, request.view, request.aspect());
+  scenes::Camera camera = chooseUnfittedCamera(scene, request.view, request.aspect());
   if (scene.lights.empty()) scenes::addDefaultLights(scene, camera);
 
   pipeline::RenderSettings settings;
@@ -91,15 +101,21 @@ int runRender(const RenderRequest& request) {
   settings.height = request.size.height;
   settings.cull_patches = request.cull_patches;
   settings.background = backgroundOf(request, scene);
-  settings.want_linear = outputIsLinear(request);
-  settings.want_srgb = !settings.want_linear;
+  settings.want_srgb = !outputIsLinear(request);
+  settings.want_linear = !settings.want_srgb || request.color_by;
   settings.want_depth = request.want_depth;
-  settings.want_ids = request.want_ids;
+  settings.want_ids = request.want_ids || request.color_by;
   settings.record_spans = !request.trace_file.empty();
 
   pipeline::PreparedScene prepared;
-  run.prepare =
-      pipeline::timePhase([&] { prepared = pipeline::prepareScene(std::move(scene), pool, request.grouping); });
+  Box3 bounds = boundsOf(scene);
+  std::optional<Coloring> coloring;
+  run.prepare = pipeline::timePhase([&] {
+    coloring = beginColoring(request, scene, pool);
+    prepared = pipeline::prepareScene(std::move(scene), pool, request.grouping);
+    if (coloring) coloring->finish(prepared, bounds, pool);
+  });
+  camera = scenes::fitClipPlanes(camera, bounds);
   if (!request.quiet) printWarnings(prepared.warnings);
 
   pipeline::Renderer renderer(pool);
@@ -109,7 +125,11 @@ int runRender(const RenderRequest& request) {
     renderer.render(prepared, camera, settings, frame);
     run.addFrame(begin_ns, frame);
   }
-  if (!request.output.empty()) run.encode = pipeline::timePhase([&] { writeOutput(request, camera, frame, pool); });
+  if (!request.output.empty())
+    run.encode = pipeline::timePhase([&] {
+      if (coloring) coloring->apply(frame, pool);
+      writeOutput(request, camera, frame, pool);
+    });
   run.pixels = request.output.empty()
                    ? 0
                    : static_cast<std::uint64_t>(settings.width) * static_cast<std::uint64_t>(settings.height);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <utility>
 
 #include "cli/commands.h"
 #include "core/error.h"
@@ -14,11 +15,17 @@ namespace {
 // What the option parser stores for a flag without a value.
 constexpr std::string_view kBareTimings = "true";
 constexpr int kMaxFrames = 100000;
+constexpr Names<ColorBy, 3> kColorByNames = {
+    {{"cluster", ColorBy::kCluster}, {"group", ColorBy::kGroup}, {"patch", ColorBy::kPatch}}};
 
 constexpr const char* kFooter =
     "The camera is chosen by one of --view, --orbit, --eye or --camera; without them it is the file's first camera,\n"
     "or, if it has none, --view iso. Lights are added when the file has none. --eye, --target and --up X,Y,Z are in\n"
     "the file's coordinates; --up may be given twice, once as axis and once as direction.\n"
+    "\n"
+    "--color-by group shows what is drawn by planes or lines; where these have too few vertices of a patch to be "
+    "worth\n"
+    "it, vertices are drawn in full and the surface stays white.\n"
     "\n"
     "Examples:\n"
     "  sheaf render model.glb -o model.png\n"
@@ -28,6 +35,8 @@ constexpr const char* kFooter =
     "  sheaf render model.glb -o model.exr --channels depth,ids\n"
     "  sheaf render builtin:terrain --frames 50 --timings=times.json --trace trace.json\n"
     "  sheaf render scan.ply --grouping planar --epsilon 0.1% -o grouped.png --timings\n"
+    "  sheaf render scan.ply --color-by cluster --tolerance 1% --overlay planes -o clusters.png\n"
+    "  sheaf render scan.ply --grouping planar --color-by group -o groups.png\n"
     "\n";
 
 [[noreturn]] void refuse(const std::string& reason) {
@@ -66,6 +75,41 @@ void understandMeasuring(const RenderArguments& arguments, RenderRequest& reques
   }
 }
 
+/// What is of no use with the colours that were asked for, or without any.
+void refuseIdleColorOptions(const RenderArguments& arguments, const RenderRequest& request) {
+  const CutArguments& cut = arguments.cut;
+  for (const auto& [given, option] : {std::pair{cut.clusters.has_value(), "--clusters"},
+                                      {cut.tolerance.has_value(), "--tolerance"},
+                                      {cut.max_faces.has_value(), "--max-faces"},
+                                      {cut.weights.has_value(), "--weights"},
+                                      {cut.from.has_value(), "--from"}})
+    if (given && request.color_by != ColorBy::kCluster)
+      refuse(fmt::format("{} is about face clusters: add --color-by cluster", option));
+  if (cut.overlay && !request.color_by) refuse("--overlay is drawn over parts of a surface: say with --color-by which");
+  if (request.color_by == ColorBy::kPatch && request.cut.overlay.planes)
+    refuse("--overlay planes: patches have boxes only");
+  if (request.color_by == ColorBy::kGroup && request.cut.overlay.boxes)
+    refuse("--overlay boxes: vertex groups have planes (or lines) only");
+  if (request.color_by == ColorBy::kGroup && request.grouping.method == pipeline::Grouping::kNone)
+    refuse("--color-by group: there are no vertex groups: add --grouping planar or linear");
+}
+
+void understandColors(const RenderArguments& arguments, RenderRequest& request) {
+  if (arguments.color_by) request.color_by = choose("--color-by", *arguments.color_by, kColorByNames);
+  request.cut = understandCut(arguments.cut);
+  refuseIdleColorOptions(arguments, request);
+}
+
+void addColorOptions(CLI::App& command, RenderArguments& a) {
+  command
+      .add_option("--color-by", a.color_by,
+                  "In place of the surface's own colours those of its face clusters (all\ninstances clustered as one "
+                  "mesh), of its vertex groups, or of the\npatches that it is drawn by")
+      ->type_name("cluster|group|patch")
+      ->group("Colours");
+  for (CLI::Option* option : addCutOptions(command, a.cut)) option->group("Colours");
+}
+
 void addOutputOptions(CLI::App& command, RenderArguments& a) {
   command.add_option("-o,--output", a.output, "PNG, JPEG, EXR, TIFF, HDR ... by the extension; - is PNG to stdout")
       ->type_name("FILE");
@@ -100,6 +144,7 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
   addPictureOptions(command, a);
   addCameraOptions(command, a);
   addGroupingOptions(command, a.grouping, pipeline::Grouping::kNone);
+  addColorOptions(command, a);
   addMeasuringOptions(command, a);
   command.footer(std::string(kFooter) + kExitCodes);
 }
@@ -111,6 +156,7 @@ RenderRequest understand(const RenderArguments& arguments) {
   understandOutput(arguments, request);
   request.cull_patches = !arguments.no_patch_culling;
   request.grouping = understandGrouping(arguments.grouping, pipeline::Grouping::kNone);
+  understandColors(arguments, request);
   return request;
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "cli/coloring.h"
 #include "cli/grouping_options.h"
 #include "cli/scene_options.h"
 
@@ -18,6 +20,8 @@ struct RenderArguments : SceneArguments {
   Text output;
   bool no_patch_culling = false;
   GroupingArguments grouping;
+  Text color_by;
+  CutArguments cut;
   Text channels;
   std::string timings;  ///< kBareTimings, a file, or empty
   Text trace;
@@ -29,6 +33,8 @@ struct RenderRequest : SceneRequest {
   std::string output;  ///< "-": PNG to stdout; empty: nothing is written
   bool cull_patches = true;
   pipeline::GroupingOptions grouping;
+  std::optional<ColorBy> color_by;
+  CutRequest cut;  ///< of kCluster; its overlay of all
   bool want_depth = false;
   bool want_ids = false;
   bool table = false;

@@ -59,7 +59,13 @@ Camera ownCamera(Camera camera, const ViewRequest& request) {
   return camera;
 }
 
-Camera unfittedCamera(const Scene& scene, const ViewRequest& request, double aspect) {
+}  // namespace
+
+DVec3 worldFromFile(const DVec3& v, bool z_up) {
+  return z_up ? DVec3(v.x, v.z, -v.y) : v;
+}
+
+Camera chooseUnfittedCamera(const Scene& scene, const ViewRequest& request, double aspect) {
   if (request.eye) return eyeCamera(scene, request);
   if (request.file_camera) return ownCamera(fileCamera(scene, *request.file_camera), request);
   if (!request.named && !request.orbit && !request.orthographic && !scene.cameras.empty())
@@ -70,14 +76,8 @@ Camera unfittedCamera(const Scene& scene, const ViewRequest& request, double asp
   return scenes::fitCamera(scene, direction, aspect, request.fov_rad.value_or(kDefaultFovRad), request.orthographic);
 }
 
-}  // namespace
-
-DVec3 worldFromFile(const DVec3& v, bool z_up) {
-  return z_up ? DVec3(v.x, v.z, -v.y) : v;
-}
-
 Camera chooseCamera(const Scene& scene, const ViewRequest& request, double aspect) {
-  return scenes::fitClipPlanes(unfittedCamera(scene, request, aspect), boundsOf(scene));
+  return scenes::fitClipPlanes(chooseUnfittedCamera(scene, request, aspect), boundsOf(scene));
 }
 
 }  // namespace sheaf::cli

@@ -1,7 +1,9 @@
 #include "grouping/clusters_file.h"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -19,13 +21,28 @@ constexpr FileKind kFileKind = {"SHEAFCLU", kClustersFileVersion, "face clusters
 // Padding would write bytes of no meaning, and other ones each time.
 static_assert(sizeof(ClusterShape) == 27 * sizeof(float));
 
-std::string encodeContent(const FaceClusters& clusters) {
+std::uint32_t checksumOf(const mesh::Mesh& mesh) {
+  constexpr std::size_t kFacesAtATime = 512;
+  std::array<std::array<Vec3, 3>, kFacesAtATime> corners;
+  uLong crc = crc32(0, nullptr, 0);
+  for (std::size_t begin = 0; begin < mesh.triangleCount(); begin += kFacesAtATime) {
+    const std::size_t count = std::min(kFacesAtATime, mesh.triangleCount() - begin);
+    for (std::size_t f = 0; f < count; ++f)
+      for (std::size_t k = 0; k < 3; ++k)  // adding 0 turns -0 into 0, which is the same place
+        corners[f][k] = mesh.positions[mesh.triangles[begin + f][k]] + 0.0F;
+    crc = crc32(crc, reinterpret_cast<const Bytef*>(corners.data()), static_cast<uInt>(count * sizeof corners[0]));
+  }
+  return static_cast<std::uint32_t>(crc);
+}
+
+std::string encodeContent(const FaceClusters& clusters, const mesh::Mesh& mesh) {
   std::vector<std::uint32_t> place(clusters.nodeCount(), kNoIndex);
   for (std::uint32_t i = 0; i < clusters.children.size(); ++i)
     for (std::uint32_t side = 0; side < 2; ++side) place[clusters.children[i][side]] = 2 * i + side;
   ByteWriter out;
   out.put(clusters.faceCount());
   out.put(static_cast<std::uint32_t>(clusters.children.size()));
+  out.put(checksumOf(mesh));
   out.putAll(std::span<const std::uint32_t>(place));
   out.putAll(std::span<const float>(clusters.cost));
   for (const std::uint32_t index : clusters.shape_index) out.putBits(index != kNoIndex ? 1U : 0U, 1);
@@ -38,12 +55,15 @@ std::string encodeContent(const FaceClusters& clusters) {
 // memory is taken for them.
 class Decoder {
  public:
-  Decoder(std::string_view content, std::string_view name) : in_(content), name_(name) {}
+  Decoder(std::string_view content, const mesh::Mesh& mesh, std::string_view name)
+      : in_(content), mesh_(mesh), name_(name) {}
 
   FaceClusters decode() {
     faces_ = in_.get<std::uint32_t>();
     merges_ = in_.get<std::uint32_t>();
+    const auto checksum = in_.get<std::uint32_t>();
     if (std::uint64_t{faces_} + 2 * std::uint64_t{merges_} > in_.left() / 4) fail("more faces than bytes");
+    checkMesh(checksum);
     std::vector<std::array<std::uint32_t, 2>> children = getChildren();
     std::vector<float> cost(merges_);
     in_.getAll(std::span(cost));
@@ -59,6 +79,15 @@ class Decoder {
  private:
   [[noreturn]] void fail(std::string_view reason) const {
     throw Error(ErrorCode::kBadInput, fmt::format("{}: damaged face clusters: {}", name_, reason));
+  }
+
+  void checkMesh(std::uint32_t checksum) const {
+    const auto refuse = [&](std::string_view reason) {
+      throw Error(ErrorCode::kBadInput, fmt::format("{}: belongs to another mesh: {}", name_, reason));
+    };
+    if (faces_ != mesh_.triangleCount())
+      refuse(fmt::format("its clusters are of {} faces, the mesh has {}", faces_, mesh_.triangleCount()));
+    if (checksum != checksumOf(mesh_)) refuse("as many faces, but other corners");
   }
 
   std::vector<std::array<std::uint32_t, 2>> getChildren() {
@@ -97,6 +126,7 @@ class Decoder {
   }
 
   ByteReader in_;
+  const mesh::Mesh& mesh_;
   std::string_view name_;
   std::uint32_t faces_ = 0;
   std::uint32_t merges_ = 0;
@@ -104,21 +134,22 @@ class Decoder {
 
 }  // namespace
 
-std::string encodeClusters(const FaceClusters& clusters) {
+std::string encodeClusters(const FaceClusters& clusters, const mesh::Mesh& mesh) {
   assert(clusters.shape_index.size() == clusters.children.size());
-  return sealed(kFileKind, encodeContent(clusters));
+  assert(clusters.faceCount() == mesh.triangleCount());
+  return sealed(kFileKind, encodeContent(clusters, mesh));
 }
 
-FaceClusters decodeClusters(std::string_view bytes, std::string_view name) {
-  return Decoder(unsealed(kFileKind, bytes, name), name).decode();
+FaceClusters decodeClusters(std::string_view bytes, const mesh::Mesh& mesh, std::string_view name) {
+  return Decoder(unsealed(kFileKind, bytes, name), mesh, name).decode();
 }
 
-void saveClusters(const std::filesystem::path& path, const FaceClusters& clusters) {
-  writeFile(path, encodeClusters(clusters));
+void saveClusters(const std::filesystem::path& path, const FaceClusters& clusters, const mesh::Mesh& mesh) {
+  writeFile(path, encodeClusters(clusters, mesh));
 }
 
-FaceClusters loadClusters(const std::filesystem::path& path) {
-  return decodeClusters(readFile(path, false), path.string());
+FaceClusters loadClusters(const std::filesystem::path& path, const mesh::Mesh& mesh) {
+  return decodeClusters(readFile(path, false), mesh, path.string());
 }
 
 }  // namespace sheaf::grouping

@@ -116,6 +116,26 @@ std::size_t weldVertices(Mesh& mesh) {
   return before - kept;
 }
 
+Mesh surfaceOf(Mesh mesh) {
+  mesh.normals = {};
+  mesh.texcoords = {};
+  mesh.colors = {};
+  weldVertices(mesh);
+  constexpr std::uint32_t kUnused = 0xFFFFFFFFU;
+  std::vector<std::uint32_t> new_index(mesh.vertexCount(), kUnused);
+  std::vector<Vec3> positions;
+  for (Triangle& t : mesh.triangles)
+    for (std::uint32_t& v : t) {
+      if (new_index[v] == kUnused) {
+        new_index[v] = static_cast<std::uint32_t>(positions.size());
+        positions.push_back(mesh.positions[v]);
+      }
+      v = new_index[v];
+    }
+  mesh.positions = std::move(positions);
+  return mesh;
+}
+
 std::size_t dropUnusableTriangles(Mesh& mesh) {
   assertValid(mesh);
   return std::erase_if(mesh.triangles, [&](const Triangle& t) {

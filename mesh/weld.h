@@ -12,6 +12,10 @@ namespace sheaf::mesh {
 /// of their corners became one vertex. Returns how many vertices vanished. Linear time on average.
 std::size_t weldVertices(Mesh& mesh);
 
+/// The surface alone, as it is however it is drawn: no attributes, vertices at the same place joined, those that no
+/// triangle uses dropped, the others in the order of their first use. Triangles keep their number and order.
+Mesh surfaceOf(Mesh mesh);
+
 /// Drops triangles with a corner whose position is not finite; the others keep their order, the vertices stay.
 /// Returns how many were dropped.
 std::size_t dropUnusableTriangles(Mesh& mesh);

@@ -22,11 +22,6 @@ constexpr std::array<Rgba8, kPartColors> kPalette = {{{214, 76, 72},
                                                       {143, 90, 200},
                                                       {236, 134, 190}}};
 
-Vec4 linearColor(std::uint32_t number) {
-  const Rgba8 c = kPalette[number];
-  return {linearFromSrgb8(c.r), linearFromSrgb8(c.g), linearFromSrgb8(c.b), 1.0F};
-}
-
 /// Stably by part.
 std::vector<std::uint32_t> facesByPart(std::span<const std::uint32_t> part_of_face, std::size_t part_count) {
   std::vector<std::uint32_t> next(part_count + 1, 0);
@@ -38,6 +33,11 @@ std::vector<std::uint32_t> facesByPart(std::span<const std::uint32_t> part_of_fa
 }
 
 }  // namespace
+
+Vec3 partColor(std::uint32_t number) {
+  const Rgba8 c = kPalette.at(number);
+  return {linearFromSrgb8(c.r), linearFromSrgb8(c.g), linearFromSrgb8(c.b)};
+}
 
 mesh::Mesh paintedParts(const mesh::Mesh& mesh, std::span<const std::uint32_t> part_of_face,
                         std::span<const std::uint32_t> color_of_part) {
@@ -57,7 +57,7 @@ mesh::Mesh paintedParts(const mesh::Mesh& mesh, std::span<const std::uint32_t> p
         last[v] = {part, static_cast<std::uint32_t>(painted.vertexCount())};
         painted.positions.push_back(mesh.positions[v]);
         if (!mesh.normals.empty()) painted.normals.push_back(mesh.normals[v]);
-        painted.colors.push_back(linearColor(color_of_part[part]));
+        painted.colors.emplace_back(partColor(color_of_part[part]), 1.0F);
       }
       painted.triangles[f][k] = last[v].vertex;
     }

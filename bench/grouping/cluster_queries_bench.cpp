@@ -1,5 +1,6 @@
 // What a hierarchy of face clusters is good for, of balls of 5,804 to 871,414 faces by one thread: rays and closest
-// points, each over a fixed row of them, one ball against another that it just touches, and saving and loading.
+// points, each over a fixed row of them, one ball against another that it just touches, and saving and loading. Beside
+// our rays those of Embree: the same rays and faces, single precision, a hierarchy made for rays.
 #include <benchmark/benchmark.h>
 
 #include <random>
@@ -7,6 +8,7 @@
 
 #include "grouping/cluster_queries.h"
 #include "grouping/clusters_file.h"
+#include "tests/embree_scene.h"
 #include "tests/grouping/shapes.h"
 
 namespace sheaf::grouping {
@@ -42,21 +44,36 @@ void setRate(benchmark::State& state, double count) {
   state.counters["per_second"] = benchmark::Counter(count, benchmark::Counter::kIsIterationInvariantRate);
 }
 
-void rays(benchmark::State& state) {
-  const Ball ball(state.range(0));
+/// hits(origin, direction) says whether there is one.
+template <typename Hits>
+void castAll(benchmark::State& state, const Hits& hits) {
   const std::vector<DVec3> points = pointsAround();
-  int hits = 0;
+  int count = 0;
   for (auto _ : state) {
-    hits = 0;
+    count = 0;
     for (int i = 0; i < kQueries; ++i) {
       const DVec3& origin = points[i];
-      const DVec3 direction = 0.5 * points[(i + 1) % kQueries] - origin;
-      hits += closestHit(ball.mesh, ball.clusters, {.origin = origin, .direction = direction}).has_value();
+      count += hits(origin, 0.5 * points[(i + 1) % kQueries] - origin);
     }
   }
-  if (hits < kQueries / 4) throw std::runtime_error("the rays miss the ball");
-  state.counters["hits"] = hits;
+  if (count < kQueries / 4) throw std::runtime_error("the rays miss the ball");
+  state.counters["hits"] = count;
   setRate(state, kQueries);
+}
+
+void rays(benchmark::State& state) {
+  const Ball ball(state.range(0));
+  castAll(state, [&](const DVec3& origin, const DVec3& direction) {
+    return closestHit(ball.mesh, ball.clusters, {.origin = origin, .direction = direction}).has_value();
+  });
+}
+
+void embreeRays(benchmark::State& state, bool robust) {
+  EmbreeScene embree;
+  if (robust) embree.makeRobust();
+  embree.add(0, Ball(state.range(0)).mesh);
+  embree.commit();
+  castAll(state, [&](const DVec3& origin, const DVec3& direction) { return bool(embree.cast(origin, direction)); });
 }
 
 void closestPoints(benchmark::State& state) {
@@ -82,14 +99,14 @@ void touching(benchmark::State& state) {
 
 void saving(benchmark::State& state) {
   const Ball ball(state.range(0));
-  for (auto _ : state) benchmark::DoNotOptimize(encodeClusters(ball.clusters));
+  for (auto _ : state) benchmark::DoNotOptimize(encodeClusters(ball.clusters, ball.mesh));
   setRate(state, ball.clusters.faceCount());
 }
 
 void loading(benchmark::State& state) {
   const Ball ball(state.range(0));
-  const std::string bytes = encodeClusters(ball.clusters);
-  for (auto _ : state) benchmark::DoNotOptimize(decodeClusters(bytes, "x"));
+  const std::string bytes = encodeClusters(ball.clusters, ball.mesh);
+  for (auto _ : state) benchmark::DoNotOptimize(decodeClusters(bytes, ball.mesh, "x"));
   state.counters["bytes_per_face"] = static_cast<double>(bytes.size()) / ball.clusters.faceCount();
   setRate(state, ball.clusters.faceCount());
 }
@@ -101,6 +118,8 @@ void sizes(benchmark::internal::Benchmark* b) {
 }
 
 BENCHMARK(rays)->Name("grouping/cluster_queries/rays")->Apply(sizes);
+BENCHMARK_CAPTURE(embreeRays, robust, true)->Name("grouping/cluster_queries/rays_by_embree/robust")->Apply(sizes);
+BENCHMARK_CAPTURE(embreeRays, fast, false)->Name("grouping/cluster_queries/rays_by_embree/fast")->Apply(sizes);
 BENCHMARK(closestPoints)->Name("grouping/cluster_queries/closest_points")->Apply(sizes);
 BENCHMARK(touching)->Name("grouping/cluster_queries/overlap")->Apply(sizes);
 BENCHMARK(saving)->Name("grouping/clusters_file/save")->Apply(sizes);

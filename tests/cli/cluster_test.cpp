@@ -8,6 +8,7 @@
 #include <set>
 
 #include "grouping/clusters_file.h"
+#include "mesh/weld.h"
 #include "raster/image_io.h"
 #include "scenes/scene.h"
 #include "tests/cli/run.h"
@@ -171,9 +172,105 @@ TEST_CASE("cli/cluster: the saved hierarchy is the whole one, whatever the cut")
   clusterJson(folder, kSphere, {"--weights", "1,1,0", "--hierarchy", "c.sheaf"});
   CHECK(folder.read("a.sheaf") == folder.read("b.sheaf"));
   CHECK(folder.read("a.sheaf") != folder.read("c.sheaf"));
-  const grouping::FaceClusters clusters = grouping::loadClusters(folder.file("a.sheaf"));
+  const mesh::Mesh mesh = mesh::surfaceOf(scenes::loadScene(kSphere).meshes.at(0));
+  const grouping::FaceClusters clusters = grouping::loadClusters(folder.file("a.sheaf"), mesh);
   CHECK(clusters.faceCount() == report["faces"]);
   CHECK(clusters.roots.size() == 1);
+}
+
+TEST_CASE("cli/cluster: a saved hierarchy gives the same cuts, pictures and PLY files as a new one") {
+  const TempFolder folder;
+  clusterJson(folder, kSphere, {"--hierarchy", "a.sheaf"});
+  for (const Words& cut : {Words{"--clusters", "9"}, Words{"--tolerance", "2%"}, Words{"--max-faces", "30"}}) {
+    CAPTURE(cut[0]);
+    const auto run = [&](const std::string& name, Words more) {
+      more.insert(more.end(), cut.begin(), cut.end());
+      more.insert(more.end(), {"-o", name});
+      return clusterJson(folder, kSphere, more);
+    };
+    Json made = run("made.ply", {}), loaded = run("loaded.ply", {"--from", "a.sheaf"});
+    CHECK(loaded["from"] == "a.sheaf");
+    CHECK(loaded["weights"] == nullptr);
+    CHECK(loaded.contains("load_ms"));
+    for (const char* differs : {"from", "weights", "load_ms", "cluster_ms"}) made.erase(differs), loaded.erase(differs);
+    CHECK(loaded == made);
+    CHECK(folder.read("loaded.ply") == folder.read("made.ply"));
+    run("made.png", {"--size", "64x48"});
+    run("loaded.png", {"--from", "a.sheaf", "--size", "64x48"});
+    CHECK(folder.read("loaded.png") == folder.read("made.png"));
+  }
+  const RunResult text = cluster(folder, kSphere, {"--from", "a.sheaf"});
+  CHECK(text.out.find(" ms to load a.sheaf\n") != std::string::npos);
+}
+
+TEST_CASE("cli/cluster: a hierarchy fits its mesh however it is drawn: creased, seamed, turned up") {
+  const TempFolder folder;
+  // A roof of two sides, so that drawing makes normals on either side of the ridge; faces that nothing holds together.
+  folder.write("roof.obj", std::string("v 0 0 0\nv 4 0 0\nv 0 2 3\nv 4 2 3\nv 0 0 6\nv 4 0 6\nv 9 9 9\n") +
+                               "f 1 2 3\nf 2 4 3\nf 3 4 5\nf 4 6 5\n");
+  clusterJson(folder, "roof.obj", {"--hierarchy", "a.sheaf"});
+  for (const Words& how :
+       {Words{}, Words{"--crease", "1"}, Words{"--up", "z"}, Words{"--up", "z", "--overlay", "boxes"}}) {
+    Words options = {"--from", "a.sheaf", "-o", "a.png", "--size", "64x48"};
+    options.insert(options.end(), how.begin(), how.end());
+    CHECK(cluster(folder, "roof.obj", options).code == 0);
+  }
+  // Saved beside a picture that is turned up, it is the same file.
+  CHECK(cluster(folder, "roof.obj", {"--up", "z", "-o", "b.png", "--hierarchy", "b.sheaf"}).code == 0);
+  CHECK(folder.read("a.sheaf") == folder.read("b.sheaf"));
+}
+
+TEST_CASE("cli/cluster: a hierarchy that is damaged or of another mesh is refused: one line, exit code 3, no file") {
+  const TempFolder folder;
+  clusterJson(folder, kSphere, {"--hierarchy", "a.sheaf"});
+  const std::string bytes = folder.read("a.sheaf");
+  folder.write("cut.sheaf", bytes.substr(0, bytes.size() / 2));
+  std::string flipped = bytes;
+  flipped[bytes.size() / 3] = static_cast<char>(flipped[bytes.size() / 3] ^ 4);
+  folder.write("flipped.sheaf", flipped);
+  folder.write("text.sheaf", "hello\n");
+  folder.write("three.obj", kThreeFaces);
+  std::string moved = kThreeFaces;
+  folder.write("moved.obj", moved.replace(moved.find("v 6 5 5"), 7, "v 7 5 5"));
+  clusterJson(folder, "three.obj", {"--hierarchy", "three.sheaf"});
+  const std::size_t files = folder.fileCount();
+  const auto refused = [&](const std::string& input, const std::string& file, const std::string& reason) {
+    for (const char* command : {"cluster", "render"}) {
+      Words words = {command, input, "--from", file, "-o", "a.png", "--size", "64x48"};
+      if (std::string(command) == "render") words.insert(words.end(), {"--color-by", "cluster"});
+      const RunResult result = runSheaf(folder, words);
+      CAPTURE(result.err);
+      CHECK(result.code == 3);
+      CHECK(result.out.empty());
+      CHECK(isOneErrorLine(result.err));
+      CHECK(result.err.starts_with("sheaf: " + file + ": "));
+      CHECK(result.err.find(reason) != std::string::npos);
+      CHECK(folder.fileCount() == files);
+    }
+  };
+  refused(kSphere, "cut.sheaf", "bytes of face clusters in place of");
+  refused(kSphere, "flipped.sheaf", "is damaged: checksum");
+  refused(kSphere, "text.sheaf", "is not a file of face clusters");
+  refused(kSphere, "none.sheaf", "");
+  refused("builtin:sphere?n=20", "a.sheaf", "belongs to another mesh: its clusters are of");
+  refused("moved.obj", "three.sheaf", "belongs to another mesh: as many faces, but other corners");
+}
+
+TEST_CASE("cli/cluster: overlays of boxes and planes change the picture, and each in its way") {
+  const TempFolder folder;
+  const auto draw = [&](const std::string& name, Words options) {
+    options.insert(options.end(), {"-o", name, "--size", "160x120", "--clusters", "8"});
+    const RunResult result = cluster(folder, kSphere, options);
+    CAPTURE(result.err);
+    REQUIRE(result.code == 0);
+    return folder.read(name);
+  };
+  const std::string plain = draw("a.png", {}), boxes = draw("b.png", {"--overlay", "boxes"}),
+                    planes = draw("c.png", {"--overlay", "planes"});
+  CHECK(boxes != plain);
+  CHECK(planes != plain);
+  CHECK(planes != boxes);
+  CHECK(draw("d.png", {"--overlay", "boxes,planes"}) == draw("e.png", {"--overlay", "planes,boxes"}));
 }
 
 TEST_CASE("cli/cluster: wrong usage is refused with the reason: one line, exit code 2, no file") {
@@ -191,6 +288,11 @@ TEST_CASE("cli/cluster: wrong usage is refused with the reason: one line, exit c
       {{"--hierarchy", "x.ply"}, "--hierarchy x.ply: expected a name that ends in .sheaf"},
       {{"-o", "x.ply", "--size", "10x10"}, "--size is about the picture"},
       {{"--view", "front"}, "--view is about the picture"},
+      {{"-o", "x.ply", "--overlay", "boxes"}, "--overlay is about the picture"},
+      {{"-o", "x.png", "--overlay", "lines"}, "--overlay lines: expected boxes, planes or boxes,planes"},
+      {{"--from", ""}, "--from: the name of the file is empty"},
+      {{"--from", "a.sheaf", "--weights", "1,1,1"}, "--weights decide how clusters are made"},
+      {{"--from", "a.sheaf", "--hierarchy", "b.sheaf"}, "--hierarchy would save what --from has loaded"},
       {{"--simd", "SCALAR"}, "--simd is about the picture"},
       {{"--orthographic"}, "--orthographic is about the picture"},
       {{"-o", "x.png", "--view", "front", "--orbit", "1,2"}, "each choose a camera"},

@@ -222,4 +222,85 @@ TEST_CASE("cli/render: an EXR shows the same picture as the PNG, and takes depth
 }
 #endif
 
+TEST_CASE("cli/render: colours by cluster are those of sheaf cluster, whatever the scene and its instances") {
+  const TempFolder folder;
+  for (const char* input : {"builtin:sphere?n=16", "builtin:city?blocks=2", "builtin:teapot?n=4"}) {
+    CAPTURE(input);
+    const auto run = [&](Words words, const std::string& name) {
+      words.insert(words.end(), {"-o", name, "--size", "131x97", "--clusters", "40", "--overlay", "boxes"});
+      const RunResult result = runSheaf(folder, words);
+      CAPTURE(result.err);
+      REQUIRE(result.code == 0);
+      return folder.read(name);
+    };
+    const std::string expected = run({"cluster", input, "--hierarchy", "a.sheaf"}, "a.png");
+    CHECK(run({"render", input, "--color-by", "cluster"}, "b.png") == expected);
+    CHECK(run({"render", input, "--color-by", "cluster", "--from", "a.sheaf"}, "c.png") == expected);
+    CHECK(run({"render", input, "--color-by", "cluster", "--threads", "3"}, "d.png") == expected);
+  }
+}
+
+TEST_CASE("cli/render: colours by patch and by group, and their overlays, are pictures of their own") {
+  const TempFolder folder;
+  const auto terrain = [&](const std::string& name, Words options) {
+    options.insert(options.begin(), {"render", "builtin:terrain?n=65", "--size", "131x97", "--view", "top", "-o", name,
+                                     "--grouping", "planar", "--epsilon", "5%"});
+    const RunResult result = runSheaf(folder, options);
+    CAPTURE(result.err);
+    REQUIRE(result.code == 0);
+    return raster::readImage(folder.file(name));
+  };
+  const std::vector<Image8> pictures = {terrain("a.png", {}), terrain("b.png", {"--color-by", "patch"}),
+                                        terrain("c.png", {"--color-by", "patch", "--overlay", "boxes"}),
+                                        terrain("d.png", {"--color-by", "group"}),
+                                        terrain("e.png", {"--color-by", "group", "--overlay", "planes"})};
+  for (std::size_t i = 0; i < pictures.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) CHECK(!(pictures[i] == pictures[k]));
+  // What is drawn is what is drawn without colours: it covers the same pixels.
+  const Image8 plain = terrain("f.png", {"--background", "transparent"});
+  const Image8 colored = terrain("g.png", {"--background", "transparent", "--color-by", "group"});
+  for (int y = 0; y < plain.height(); ++y)
+    for (int x = 0; x < plain.width(); ++x) CHECK(plain.at(x, y).a == colored.at(x, y).a);
+}
+
+TEST_CASE("cli/render: colours that cannot be shown are refused: one line, exit code 2, no file") {
+  const TempFolder folder;
+  const std::vector<std::pair<Words, std::string>> wrong = {
+      {{"--color-by", "face"}, "--color-by face: expected one of cluster, group, patch"},
+      {{"--color-by", "group"}, "--color-by group: there are no vertex groups: add --grouping planar or linear"},
+      {{"--color-by", "patch", "--overlay", "planes"}, "--overlay planes: patches have boxes only"},
+      {{"--color-by", "group", "--grouping", "planar", "--overlay", "boxes,planes"}, "vertex groups have planes"},
+      {{"--overlay", "boxes"}, "--overlay is drawn over parts of a surface: say with --color-by which"},
+      {{"--clusters", "9"}, "--clusters is about face clusters: add --color-by cluster"},
+      {{"--color-by", "patch", "--tolerance", "1%"}, "--tolerance is about face clusters"},
+      {{"--color-by", "patch", "--from", "a.sheaf"}, "--from is about face clusters"},
+      {{"--color-by", "cluster", "--clusters", "9", "--max-faces", "9"}, "each choose a cut"},
+  };
+  for (const auto& [options, reason] : wrong) {
+    CAPTURE(reason);
+    Words words = {"render", "builtin:sphere?n=8", "-o", "a.png"};
+    words.insert(words.end(), options.begin(), options.end());
+    const RunResult result = runSheaf(folder, words);
+    CAPTURE(result.err);
+    CHECK(result.code == 2);
+    CHECK(isOneErrorLine(result.err));
+    CHECK(result.err.find(reason) != std::string::npos);
+    CHECK(folder.fileCount() == 0);
+  }
+}
+
+TEST_CASE("cli/render: a coloured EXR is linear and has its ids") {
+  const TempFolder folder;
+  const Words words = {"render", "builtin:sphere?n=8", "--size", "64x48", "--color-by", "patch", "-o",
+                       "a.exr",  "--channels",         "ids"};
+  const RunResult result = runSheaf(folder, words);
+  if (result.code == 4) return;  // without the module
+  REQUIRE(result.code == 0);
+  const Image8 read = raster::readImage(folder.file("a.exr"));
+  const RunResult png =
+      runSheaf(folder, {"render", "builtin:sphere?n=8", "--size", "64x48", "--color-by", "patch", "-o", "a.png"});
+  REQUIRE(png.code == 0);
+  CHECK(raster::compareImages(read, raster::readImage(folder.file("a.png"))).max_error <= 2);
+}
+
 }  // namespace sheaf::cli

@@ -53,6 +53,16 @@ TEST_CASE("grouping/cluster_colors: colours are used evenly, so that a picture s
   for (const int n : used) CHECK(n >= 10);
 }
 
+TEST_CASE("grouping/cluster_colors: faces in no part are nobody's neighbours") {
+  const mesh::Mesh grid = mesh::makeGrid(6);
+  std::vector<std::uint32_t> part(grid.triangleCount());
+  for (std::uint32_t f = 0; f < part.size(); ++f) part[f] = f / 12 % 2 == 0 ? f / 24 : kNoIndex;  // every other row
+  CHECK(colorParts(grid, part, 3, 1) == std::vector<std::uint32_t>(3, 0));
+  for (std::uint32_t f = 0; f < part.size(); ++f) part[f] = f / 12;
+  const std::vector<std::uint32_t> rows = colorParts(grid, part, 6, 2);
+  for (std::size_t i = 0; i + 1 < rows.size(); ++i) CHECK(rows[i] != rows[i + 1]);
+}
+
 TEST_CASE("grouping/cluster_colors: too few colours, faces without neighbours and no faces are no trouble") {
   std::mt19937 rng(0xc0107);
   const mesh::Mesh ball = lumpyBall(rng, 6, 8);

@@ -6,6 +6,8 @@
 
 #include "grouping/dual_graph.h"
 #include "mesh/triangle_queries.h"
+#include "scenes/builtin.h"
+#include "tests/embree_scene.h"
 #include "tests/grouping/shapes.h"
 
 namespace sheaf::grouping {
@@ -126,6 +128,43 @@ TEST_CASE("grouping/cluster_queries: rays at vertices and along edges hit what a
       ray.direction = DVec3(q) - DVec3(p);
       if (ray.direction != DVec3(0.0)) CHECK(closestHit(m.mesh, m.clusters, ray) == plainHit(m.mesh, ray));
     }
+}
+
+TEST_CASE("grouping/cluster_queries: a ray hits what Embree hits") {
+  std::mt19937 rng(0x9e56);
+  std::vector<mesh::Mesh> meshes = {lumpyBall(rng, 60, 80, 0.005F), hills(rng, 60), triangleSoup(rng, 200, 400)};
+  const scenes::Scene teapot = scenes::buildBuiltin("teapot?n=10");
+  meshes.insert(meshes.end(), teapot.meshes.begin(), teapot.meshes.end());
+  for (const mesh::Mesh& mesh : meshes) {
+    const Model m = makeModel(mesh);
+    EmbreeScene embree;
+    embree.makeRobust();
+    embree.add(0, mesh);
+    embree.commit();
+    const double extent = double{mesh::boundsOf(mesh).longestEdge()};
+    constexpr int kRays = 20000;
+    int hits = 0, apart = 0;
+    for (int i = 0; i < kRays; ++i) {
+      // What Embree is given are floats.
+      const DVec3 origin(Vec3(pointAround(mesh, rng)));
+      const DVec3 direction(Vec3(pointAround(mesh, rng) - origin));
+      const auto ours = closestHit(m.mesh, m.clusters, {.origin = origin, .direction = direction});
+      const EmbreeHit theirs = embree.cast(origin, direction);
+      hits += ours.has_value();
+      const bool same = ours.has_value() == bool(theirs) &&
+                        (!ours || std::abs(ours->t - theirs.t) * glm::length(direction) < 1e-5 * extent);
+      apart += same ? 0 : 1;
+      // Not only as far away: the same face, but at edges, or where two are that near to each other.
+      if (same && ours && ours->face != theirs.triangle) {
+        const auto t = mesh::meetLine(cornersOf(mesh, theirs.triangle), origin, direction);
+        const bool at_edge = !t.has_value();
+        CHECK((at_edge || std::abs(*t - ours->t) * glm::length(direction) < 1e-5 * extent));
+      }
+    }
+    CAPTURE(mesh.triangleCount());
+    CHECK(hits > kRays / 20);
+    CHECK(apart <= kRays / 5000);  // rays that graze an edge
+  }
 }
 
 TEST_CASE("grouping/cluster_queries: the closest point is that of a loop over all faces") {

@@ -74,4 +74,28 @@ TEST_CASE("mesh/weld: triangles that cannot be drawn are dropped, the others kee
   CHECK(dropUnusableTriangles(m) == 0);
 }
 
+TEST_CASE("mesh/weld: a surface is the same however its vertices are numbered, split and decorated") {
+  Mesh cube = makeCube();
+  cube.positions.insert(cube.positions.begin() + 3, Vec3(77.0F));  // unused
+  for (Triangle& t : cube.triangles)
+    for (std::uint32_t& v : t) v += v >= 3 ? 1 : 0;
+  const Mesh surface = surfaceOf(cube);
+  CHECK(surface.vertexCount() == 8);
+  CHECK(surface.triangles[0] == Triangle{0, 1, 2});
+  REQUIRE(surface.triangleCount() == cube.triangleCount());
+  for (std::size_t f = 0; f < cube.triangleCount(); ++f)
+    for (std::size_t k = 0; k < 3; ++k)
+      CHECK(surface.positions[surface.triangles[f][k]] == cube.positions[cube.triangles[f][k]]);
+  Mesh creased = cube;
+  makeSmoothNormals(creased, 0.1);
+  creased.colors.assign(creased.vertexCount(), Vec4(0.5F));
+  REQUIRE(creased.vertexCount() > cube.vertexCount());
+  const Mesh again = surfaceOf(creased);
+  CHECK(again.positions == surface.positions);
+  CHECK(again.triangles == surface.triangles);
+  CHECK(again.normals.empty());
+  CHECK(again.colors.empty());
+  CHECK(surfaceOf({}).positions.empty());
+}
+
 }  // namespace sheaf::mesh

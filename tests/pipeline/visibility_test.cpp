@@ -1,10 +1,9 @@
 // What is seen at each pixel, against rays cast by Embree through its centre.
 #include <doctest/doctest.h>
-#include <embree3/rtcore.h>
 
 #include <cmath>
-#include <memory>
 
+#include "tests/embree_scene.h"
 #include "tests/pipeline/scene_fixture.h"
 
 namespace sheaf::pipeline {
@@ -17,61 +16,23 @@ struct Hit {
   bool operator==(const Hit& other) const { return instance == other.instance && triangle == other.triangle; }
 };
 
-// All instances as world-space triangles in one ray-casting scene.
+// All instances as world-space triangles.
 class RayCaster {
  public:
-  explicit RayCaster(const scenes::Scene& scene) : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
-    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) add(scene, i);
-    rtcCommitScene(scene_);
+  explicit RayCaster(const scenes::Scene& scene) {
+    embree_.makeRobust();
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i)
+      embree_.add(i, scene.meshes[scene.instances[i].mesh], scene.instances[i].world_from_object);
+    embree_.commit();
   }
-  ~RayCaster() {
-    rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
-  }
-  RayCaster(const RayCaster&) = delete;
-  RayCaster& operator=(const RayCaster&) = delete;
 
   Hit cast(const DVec3& origin, const DVec3& direction) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    RTCRayHit ray{};
-    ray.ray.org_x = static_cast<float>(origin.x);
-    ray.ray.org_y = static_cast<float>(origin.y);
-    ray.ray.org_z = static_cast<float>(origin.z);
-    ray.ray.dir_x = static_cast<float>(direction.x);
-    ray.ray.dir_y = static_cast<float>(direction.y);
-    ray.ray.dir_z = static_cast<float>(direction.z);
-    ray.ray.tfar = std::numeric_limits<float>::infinity();
-    ray.ray.mask = ~0U;
-    ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene_, &context, &ray);
-    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-    return {ray.hit.geomID, ray.hit.primID, double{ray.ray.tfar}};
+    const EmbreeHit hit = embree_.cast(origin, direction);
+    return hit ? Hit{hit.mesh, hit.triangle, hit.t} : Hit{};
   }
 
  private:
-  void add(const scenes::Scene& scene, std::uint32_t number) {
-    const scenes::Instance& instance = scene.instances[number];
-    const mesh::Mesh& mesh = scene.meshes[instance.mesh];
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                          3 * sizeof(float), mesh.positions.size()));
-    for (const Vec3& p : mesh.positions) {
-      const DVec3 world(instance.world_from_object * DVec4(p, 1.0));
-      for (int k = 0; k < 3; ++k) *v++ = static_cast<float>(world[k]);
-    }
-    auto* t = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                             3 * sizeof(unsigned), mesh.triangles.size()));
-    for (const mesh::Triangle& triangle : mesh.triangles)
-      for (const std::uint32_t index : triangle) *t++ = index;
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene_, geometry, number);
-    rtcReleaseGeometry(geometry);
-  }
-
-  RTCDevice device_;
-  RTCScene scene_;
+  EmbreeScene embree_;
 };
 
 // Origin and direction of rays through points of the picture, in pixels.

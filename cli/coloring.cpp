@@ -1,0 +1,35 @@
+#include "cli/coloring.h"
+
+#include <utility>
+
+#include "grouping/cluster_colors.h"
+#include "scenes/painted_parts.h"
+
+namespace sheaf::cli {
+
+Coloring::Coloring(const Clustering& c, const pipeline::Overlay& overlay, scenes::Scene& scene)
+    : by_(ColorBy::kCluster), what_(overlay) {
+  colors_ = pipeline::colorsByPart(scene, grouping::clusterOfFace(c.clusters, c.cut),
+                                   grouping::colorClusters(c.surface, c.clusters, c.cut, scenes::kPartColors));
+  if (overlay.any()) overlay_ = pipeline::clusterOverlay(c.surface, c.clusters, c.cut, overlay, c.world_from_surface);
+  pipeline::whitenSurfaces(scene);
+}
+
+Coloring::Coloring(ColorBy by, const pipeline::Overlay& overlay, scenes::Scene& scene)
+    : by_(by), what_(overlay), surfaces_(pipeline::surfacesOf(scene)) {
+  pipeline::whitenSurfaces(scene);
+}
+
+void Coloring::finish(pipeline::PreparedScene& prepared, Box3& bounds, TaskPool& pool) {
+  const bool of_groups = by_ == ColorBy::kGroup;
+  if (by_ != ColorBy::kCluster) {
+    colors_ = of_groups ? pipeline::colorsByGroup(prepared, surfaces_) : pipeline::colorsByPatch(prepared, surfaces_);
+    surfaces_ = {};
+    if (what_.any()) overlay_ = of_groups ? pipeline::groupPlanes(prepared) : pipeline::patchBoxes(prepared);
+  }
+  if (!what_.any()) return;
+  bounds.extend(scenes::boundsOf(overlay_));
+  pipeline::addOverlay(std::exchange(overlay_, {}), prepared, pool);
+}
+
+}  // namespace sheaf::cli

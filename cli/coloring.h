@@ -1,0 +1,36 @@
+// cli/coloring: a picture in which colours tell the parts of a surface apart, from the scene to the pixels.
+#pragma once
+
+#include <vector>
+
+#include "cli/cut_options.h"
+#include "pipeline/triangle_colors.h"
+
+namespace sheaf::cli {
+
+enum class ColorBy { kCluster, kGroup, kPatch };
+
+/// Made of a scene before it is prepared; then taken along.
+class Coloring {
+ public:
+  /// Face clusters, neighbours in different colours. scene  that was clustered; loses its own colours
+  Coloring(const Clustering& clustering, const pipeline::Overlay& overlay, scenes::Scene& scene);
+  /// Groups or patches. scene  loses its own colours
+  Coloring(ColorBy by, const pipeline::Overlay& overlay, scenes::Scene& scene);
+
+  /// Finds the colours of what was prepared from the scene and adds the overlay to it.
+  /// bounds  of the scene; made to hold the overlay too
+  void finish(pipeline::PreparedScene& prepared, Box3& bounds, TaskPool& pool);
+
+  /// Afterwards. frame  drawn with askForPixels()
+  void apply(pipeline::Frame& frame, TaskPool& pool) const { pipeline::colorPixels(colors_, frame, pool); }
+
+ private:
+  ColorBy by_;
+  pipeline::Overlay what_;
+  std::vector<mesh::Mesh> surfaces_;  // of groups and patches, until finish()
+  scenes::Scene overlay_;             // of clusters, until finish()
+  pipeline::TriangleColors colors_;
+};
+
+}  // namespace sheaf::cli

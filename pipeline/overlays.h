@@ -1,0 +1,39 @@
+// pipeline/overlays: the planes and boxes of face clusters, vertex groups and patches as thin dark bars, drawn into the
+// picture of the surface that they belong to.
+//   In     what the geometry stage and the queries work with, so that it can be looked at
+//   Out    geometry like any other: what is behind the surface is hidden by it
+#pragma once
+
+#include <span>
+
+#include "core/task_pool.h"
+#include "grouping/face_clusters.h"
+#include "mesh/mesh.h"
+#include "pipeline/prepare.h"
+#include "scenes/scene.h"
+
+namespace sheaf::pipeline {
+
+struct Overlay {
+  bool boxes = false;   ///< all edges
+  bool planes = false;  ///< a rectangle with a lattice of lines, as large as the box
+  bool any() const { return boxes || planes; }
+};
+
+/// Of each cluster, by its shape: the oriented box, and the plane that fits it.
+/// mesh              that the clusters were made of
+/// world_from_mesh  a rigid motion
+scenes::Scene clusterOverlay(const mesh::Mesh& mesh, const grouping::FaceClusters& clusters,
+                             std::span<const std::uint32_t> cut, const Overlay& what,
+                             const DMat4& world_from_mesh = DMat4(1.0));
+
+/// The box of each patch.
+scenes::Scene patchBoxes(const PreparedScene& scene);
+
+/// The part of its plane that a run of vertices spans, of its line likewise.
+scenes::Scene groupPlanes(const PreparedScene& scene);
+
+/// Adds instances behind those of the scene. Lights and the like of the overlay do not count.
+void addOverlay(scenes::Scene overlay, PreparedScene& scene, TaskPool& pool);
+
+}  // namespace sheaf::pipeline

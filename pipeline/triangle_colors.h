@@ -1,0 +1,53 @@
+// pipeline/triangle_colors: pictures whose colours say which part of a surface a triangle belongs to: a face cluster, a
+// vertex group, a patch.
+//   Method The scene is drawn white (whitenSurfaces), with ids. Then every pixel takes the colour of the triangle that
+//   is
+//          seen there (colorPixels). So colours end exactly where triangles do, light and shade stay, and what was
+//          drawn is what would have been drawn without them: no vertex is there twice.
+//   Keeps  neighbours in different colours, as grouping::colorParts() does
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/task_pool.h"
+#include "mesh/mesh.h"
+#include "pipeline/prepare.h"
+#include "pipeline/renderer.h"
+#include "scenes/scene.h"
+
+namespace sheaf::pipeline {
+
+/// Of a triangle that is in no part: it stays white.
+inline constexpr std::uint8_t kUncolored = 0xFF;
+
+/// For each instance one of several lists: instances of one mesh may share theirs.
+struct TriangleColors {
+  std::vector<std::vector<std::uint8_t>> lists;  ///< per triangle of a mesh a scenes::partColor(), or kUncolored
+  std::vector<std::uint32_t> list_of_instance;   ///< into lists; instances beyond the last keep their own colours
+};
+
+/// Takes what colours surfaces: materials become white and lit, textures and vertex colours go. Flat ones stay flat.
+void whitenSurfaces(scenes::Scene& scene);
+
+/// mesh::surfaceOf() each mesh, to be had before prepareScene() takes the meshes: who is whose neighbour.
+std::vector<mesh::Mesh> surfacesOf(const scenes::Scene& scene);
+
+/// Of parts of scenes::joinedMesh(scene), such as face clusters.
+/// part_of_face   per triangle of all instances, one instance after the other
+/// color_of_part  #P, below scenes::kPartColors
+TriangleColors colorsByPart(const scenes::Scene& scene, std::span<const std::uint32_t> part_of_face,
+                            std::span<const std::uint32_t> color_of_part);
+
+/// surfaces  of the scene that `scene` was prepared from
+TriangleColors colorsByPatch(const PreparedScene& scene, std::span<const mesh::Mesh> surfaces);
+
+/// A triangle belongs to the plane or line that at least two of its corners are drawn by. Others, and all of a scene
+/// that was prepared without groups, are in none.
+TriangleColors colorsByGroup(const PreparedScene& scene, std::span<const mesh::Mesh> surfaces);
+
+/// frame  drawn with want_linear and want_ids; color is brought up to date if it is there
+void colorPixels(const TriangleColors& colors, Frame& frame, TaskPool& pool);
+
+}  // namespace sheaf::pipeline

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -232,6 +233,12 @@ PatchSet clusterPatches(const Mesh& mesh, const FaceClusters& clusters, const Pa
   pieces = {};
   append(splitByPlace(mesh, std::move(crumbs), limits, pool), cut);
   return writePatches(mesh, cut, pool);
+}
+
+PatchSet clusterPatches(const Mesh& mesh, const PatchLimits& limits, TaskPool& pool) {
+  ClusterOptions options;
+  options.min_shape_faces = std::numeric_limits<std::uint32_t>::max();  // patches get bounds of their own
+  return clusterPatches(mesh, clusterFaces(mesh, options, pool), limits, pool);
 }
 
 }  // namespace sheaf::grouping

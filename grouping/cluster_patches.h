@@ -15,4 +15,7 @@ namespace sheaf::grouping {
 PatchSet clusterPatches(const mesh::Mesh& mesh, const FaceClusters& clusters, const PatchLimits& limits,
                         TaskPool& pool);
 
+/// The same with a hierarchy of its own.
+PatchSet clusterPatches(const mesh::Mesh& mesh, const PatchLimits& limits, TaskPool& pool);
+
 }  // namespace sheaf::grouping

@@ -204,7 +204,7 @@ VertexGroups groupInPatches(const mesh::Mesh& mesh, const PatchSet& patches, con
       out.metric == Metric::kQuadric ? vertexEllipsoids(mesh, eps, out.limit) : std::vector<Sym3>{};
   Findings findings = searchPatches(mesh, patches, eps, ellipsoids, options.min_members, out.planes, pool);
   assembleGroups(mesh.positions, in_use, std::move(findings), Placement(ellipsoids), out);
-  finishGroups(mesh, false, start_ns, out);
+  finishGroups(mesh, options.restore_flipped, start_ns, out);
   return out;
 }
 

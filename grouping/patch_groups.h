@@ -23,6 +23,7 @@ struct PatchGroupOptions {
   Metric metric = Metric::kDistance;
   Limit limit = Limit::kSafe;     ///< of the quadric metric
   std::uint32_t min_members = 2;  ///< planes that would take fewer are left out, at least 1
+  bool restore_flipped = false;   ///< as PlanarOptions::restore_flipped
 };
 
 /// Throws Error(kBadInput) if a vertex in use is not finite or beyond 1e30.

@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <limits>
 #include <utility>
 
 #include "core/error.h"
 #include "grouping/cluster_patches.h"
-#include "grouping/face_clusters.h"
 #include "grouping/group_quality.h"
 #include "grouping/linear_groups.h"
 #include "grouping/patch_groups.h"
@@ -124,13 +122,6 @@ grouping::VertexGroups findPatchGroups(const mesh::Mesh& mesh, const grouping::P
   return groupInPatches(mesh, set, patch_groups, pool);
 }
 
-grouping::PatchSet makePatches(const mesh::Mesh& mesh, Grouping method, TaskPool& pool) {
-  if (method != Grouping::kCluster) return grouping::splitIntoPatches(mesh, {}, pool);
-  grouping::ClusterOptions options;
-  options.min_shape_faces = std::numeric_limits<std::uint32_t>::max();  // patches get shapes of their own
-  return grouping::clusterPatches(mesh, grouping::clusterFaces(mesh, options, pool), {}, pool);
-}
-
 // Moves the mesh's vertices to where their groups put them and sorts the patches by group.
 void groupVertices(const GroupingOptions& options, mesh::Mesh& mesh, grouping::PatchSet& set, TaskPool& pool,
                    PreparedMesh& out, std::vector<std::string>& warnings) {
@@ -152,7 +143,8 @@ PreparedMesh prepareMesh(mesh::Mesh& mesh, const GroupingOptions& options, bool 
                          std::vector<std::string>& warnings) {
   PreparedMesh out;
   out.extent = mesh::boundsOf(mesh).longestEdge();
-  grouping::PatchSet set = makePatches(mesh, options.method, pool);
+  grouping::PatchSet set = options.method == Grouping::kCluster ? grouping::clusterPatches(mesh, {}, pool)
+                                                                : grouping::splitIntoPatches(mesh, {}, pool);
   if (options.method == Grouping::kNone)
     out.vertices = ungroupedRuns(mesh, set, pool);
   else

@@ -171,6 +171,7 @@ PreparedMesh prepareMesh(mesh::Mesh& mesh, const GroupingOptions& options, bool 
     out.triangle_count += patch.triangle_count;
   }
   out.patches = std::move(set.patches);
+  out.tree = grouping::buildPatchTree(out.patches);
   out.corners = std::move(set.corners);
   out.triangle_source = std::move(set.triangle_source);
   return out;
@@ -191,7 +192,7 @@ std::vector<bool> meshesWithShadedPositions(const scenes::Scene& scene) {
 }  // namespace
 
 std::uint64_t PreparedMesh::bytes() const {
-  std::uint64_t sum = vertices.bytes() + bytesOf(patches) + bytesOf(triangle_source) + bytesOf(normal);
+  std::uint64_t sum = vertices.bytes() + bytesOf(patches) + tree.bytes() + bytesOf(triangle_source) + bytesOf(normal);
   for (const auto& c : corners) sum += bytesOf(c);
   for (const auto& p : position) sum += bytesOf(p);
   for (const auto& t : texcoord) sum += bytesOf(t);

@@ -36,7 +36,7 @@ PreparedScene prepare(scenes::Scene scene, const scenes::Camera& camera, const G
 
 Frame draw(const PreparedScene& scene, const scenes::Camera& camera, TaskPool& pool, bool cull = true) {
   RenderSettings settings = allChannels(kWidth, kHeight);
-  settings.cull_patches = cull;
+  settings.culling = cull ? Culling::kTree : Culling::kNone;
   Frame frame;
   Renderer(pool).render(scene, camera, settings, frame);
   return frame;

@@ -159,7 +159,8 @@ TEST_CASE("cli/group: points without faces are grouped by distance, and a warnin
 
 TEST_CASE("cli/group: by cluster, every patch has a frame, and the saved groups are whole") {
   const TempFolder folder;
-  const json j = grouped(folder, {"--method", "cluster", "-o", "g.sheaf", "--snapped", "s.ply"}, "builtin:terrain?n=65");
+  const json j =
+      grouped(folder, {"--method", "cluster", "-o", "g.sheaf", "--snapped", "s.ply"}, "builtin:terrain?n=65");
   CHECK(j["method"] == "cluster");
   CHECK(j["key"].is_null());
   CHECK(j["planes"] > 10);

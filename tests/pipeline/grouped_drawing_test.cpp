@@ -179,8 +179,8 @@ TEST_CASE("pipeline/grouped: by planes of patches, what differs from the ungroup
     }
   }
   CHECK(grouped_vertices > 10000);
-  CHECK(outside > 20);
-  CHECK(inside > 20);
+  CHECK(outside > 10);
+  CHECK(inside > 10);
 }
 
 // The same vertices in another frame: what falls outside, is clipped or culled must not depend on the space of the

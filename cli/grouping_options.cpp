@@ -24,6 +24,10 @@ void addGroupingOptions(CLI::App& command, GroupingArguments& a, pipeline::Group
       "safe|paper");
   add("--epsilon", a.epsilon, "0.5% or 0.005 of the longest edge of each mesh's box (default 0.5%)", "E");
   add("--parameters", a.parameters, "How parameters on lines and planes are stored (default 16bit)", "16bit|float");
+  add("--prefer", a.prefer,
+      "Planes where they are faster, in meshes of 900,000 vertices and\nmore, or wherever they save memory (default "
+      "speed)",
+      "speed|memory");
 }
 
 pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments, pipeline::Grouping usual) {
@@ -35,7 +39,8 @@ pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments,
     for (const auto& [given, option] : {std::pair{arguments.metric.has_value(), "--metric"},
                                         {arguments.limit.has_value(), "--limit"},
                                         {arguments.epsilon.has_value(), "--epsilon"},
-                                        {arguments.parameters.has_value(), "--parameters"}})
+                                        {arguments.parameters.has_value(), "--parameters"},
+                                        {arguments.prefer.has_value(), "--prefer"}})
       if (given)
         throw Error(ErrorCode::kUsage, fmt::format("{} is for grouped drawing: add --grouping planar", option));
     return options;
@@ -44,6 +49,7 @@ pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments,
   options.limit = choose("--limit", arguments.limit.value_or("safe"), kLimitNames);
   options.epsilon = parseFraction("--epsilon", arguments.epsilon.value_or("0.5%"));
   options.form = choose("--parameters", arguments.parameters.value_or("16bit"), kParameterNames);
+  options.prefer = choose("--prefer", arguments.prefer.value_or("speed"), kPreferNames);
   if (arguments.limit && options.metric == grouping::Metric::kDistance)
     throw Error(ErrorCode::kUsage, "--limit is for the quadric metric: by distance no vertex moves beyond epsilon");
   return options;
@@ -54,8 +60,10 @@ std::string groupingText(const pipeline::GroupingOptions& options) {
       fmt::format("{} groups, {} metric", nameOf(options.method, kGroupingNames), nameOf(options.metric, kMetricNames));
   if (options.metric == grouping::Metric::kQuadric)
     text += fmt::format(" with {} limit", nameOf(options.limit, kLimitNames));
-  return text + fmt::format(", epsilon {:.4g} %, {} parameters", 100.0 * options.epsilon,
-                            options.form == pipeline::ParameterForm::k16Bit ? "16-bit" : "float");
+  return text +
+         fmt::format(", epsilon {:.4g} %, {} parameters", 100.0 * options.epsilon,
+                     options.form == pipeline::ParameterForm::k16Bit ? "16-bit" : "float") +
+         (options.prefer == pipeline::Prefer::kMemory ? ", to save memory" : "");
 }
 
 nlohmann::ordered_json groupingJson(const pipeline::GroupingOptions& options) {
@@ -63,7 +71,8 @@ nlohmann::ordered_json groupingJson(const pipeline::GroupingOptions& options) {
                                  {"metric", nameOf(options.metric, kMetricNames)},
                                  {"limit", nullptr},
                                  {"epsilon", options.epsilon},
-                                 {"parameters", nameOf(options.form, kParameterNames)}};
+                                 {"parameters", nameOf(options.form, kParameterNames)},
+                                 {"prefer", nameOf(options.prefer, kPreferNames)}};
   if (options.metric == grouping::Metric::kQuadric) json["limit"] = nameOf(options.limit, kLimitNames);
   return json;
 }

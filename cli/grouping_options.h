@@ -24,6 +24,9 @@ inline constexpr Names<grouping::Limit, 2> kLimitNames = {
 inline constexpr Names<pipeline::ParameterForm, 2> kParameterNames = {
     {{"16bit", pipeline::ParameterForm::k16Bit}, {"float", pipeline::ParameterForm::kFloat}}};
 
+inline constexpr Names<pipeline::Prefer, 2> kPreferNames = {
+    {{"speed", pipeline::Prefer::kSpeed}, {"memory", pipeline::Prefer::kMemory}}};
+
 /// The options as they were written; absent ones are empty.
 struct GroupingArguments {
   std::optional<std::string> grouping;
@@ -31,6 +34,7 @@ struct GroupingArguments {
   std::optional<std::string> limit;
   std::optional<std::string> epsilon;
   std::optional<std::string> parameters;
+  std::optional<std::string> prefer;
 };
 
 /// usual  the method when none is asked for

@@ -21,40 +21,41 @@ namespace sheaf::experiments {
 namespace {
 
 constexpr const char* kKernelVerdict =
-    "*Vectors.* To clip space a vertex on a plane costs 0.7 of a full one, not 0.45 as without vectors. *Stores "
-    "and projection* are the larger part: to the screen, with a division and vertices stored whole for the "
-    "set-up, costs 0.2 ns more for full vertices and 0.3 ns for grouped ones, whose parameters have to be "
-    "unpacked and whose runs do not fill the last vector: what groups save before, they lose here. *Bandwidth*: "
-    "reading 12 bytes takes 0.33 ns and 4 bytes 0.15, but that hides behind the arithmetic: from memory the full "
-    "transform to the screen is only a tenth slower than from caches. One thread is bound by the stores and "
-    "shuffles of projected vertices. *Clock*: two tenths of what a patch of 256 vertices costs.\n\n";
+    "*Vectors.* To clip space a vertex on a plane costs as much as one in full, not 0.45 of it as without "
+    "vectors: what it saves in products goes into unpacking parameters and into runs that do not fill their last "
+    "vector. *Division, rounding and stores* are half of what a full vertex costs, the same for both. From caches "
+    "grouped vertices therefore take a quarter longer; in runs of 256 both take 0.31 ns (`scripts/bench pipeline "
+    "--benchmark_filter=transform_runs`). *Bandwidth* is the one thing that planes save: only to read 12 bytes "
+    "takes 0.42 ns, 4 bytes 0.16. From memory the full transform takes a third longer than from caches, by planes "
+    "a tenth, and they are equal. *Clock*: a third of what the kernel takes for a patch.\n\n";
 constexpr const char* kLargeVerdict =
-    "**1.5 times as fast is not reached.** With 16-bit parameters groups make transform and clipping 1.16 to 1.18 "
-    "times as fast on one thread, and hardly at all on two (1.03 to 1.05); as floats they are slower than full "
-    "coordinates. In a frame a vertex costs 1.1 ns on the terrain, where the kernels by themselves take 0.45 (the "
-    "section before): the set-up in between takes the caches from them. Asking for the next patch's vertices "
-    "ahead of time changed nothing, so it is not memory that they wait for. Set-up and binning cost several times "
-    "as much, and the whole geometry stage gains 3 to 9 %.\n\n";
+    "**1.5 times as fast is not reached**: with 16-bit parameters groups make transform and clipping 1.00 to 1.05 "
+    "times as fast. They made it 1.16 to 1.18 times as fast before the renderer asked for the next patch's "
+    "vertices while it sets one up, which took the terrain from 4.6 to 3.0 ms without groups and from 3.9 to 3.0 "
+    "with them: what planes saved was waiting for memory, and now neither way waits for much. Of the 0.59 ns that "
+    "a full vertex takes on the terrain, 0.29 are the kernel (0.15 of them division, rounding and stores) and "
+    "0.09 the clock. With its vertices read once more before the clock starts it takes 0.53, by planes 0.56. So "
+    "groups can only save the 0.13 ns of sums before the division and less than 0.1 of waiting: were all of that "
+    "free, they would be 1.6 times as fast. Storing shorter runs by planes (`--prefer memory`) makes vertices 40 "
+    "to 42 % as large as positions in floats, and one thread 13 % slower. The whole geometry stage gains 2 to 4 "
+    "%, most of it in set-up.\n\n";
 constexpr const char* kSweepVerdict =
-    "**Never slower than 0.95 times is not kept**, though nearly all of these meshes are drawn in full even where "
-    "they are grouped: a patch on its own plane for a few vertices does not pay, and is left out when preparing, "
-    "so that below 40,000 vertices there is one run per patch. What differs there is noise: a microsecond is 45 "
-    "readings of the clock. Where planes are used within the caches they cost up to a tenth (bunny, teapot) or a "
-    "sixth (sphere on two threads); only the dragon gains on one thread. Of the whole geometry stage that is -3 "
-    "to +6 %.\n\n";
+    "**Never slower than 0.95 times is kept**: 0.98 at least. Meshes of less than 900,000 patch vertices are "
+    "stored in full even where they are grouped (`--prefer speed`, the default): what differs there is noise, 1 "
+    "to 3 %. By planes in runs of 120 and more the dragon, terrain?n=256 and sphere?n=289 were 0.91 to 0.96 times "
+    "as fast.\n\n";
 constexpr const char* kFramesVerdict =
     "**A whole frame gains nothing.** Against the same moved vertices drawn without groups the difference is -2 "
     "to +2 %, within the noise and the bound of 3 %. Against the original mesh every scene but two is slower, "
     "mostly by 2 %, the terrain by 6 % and the dragon by 12 %: not by groups, but because vertices that have "
     "moved make a mesh that costs more to draw, grouped or not.\n\n";
 constexpr const char* kVisibleVerdict =
-    "**Neither bound is met.** At 10 % in view grouped drawing takes 1.4 to 1.7 times less than classic for the "
+    "**Neither bound is met.** At 10 % in view grouped drawing takes 1.4 to 1.8 times less than classic for the "
     "whole geometry stage, not 5 times: setting up the triangles in view, the same for all, is most of it "
-    "(transform and clip together: 4 to 5.5 times on the large meshes). Against modern it gains only on the "
-    "terrain with 5 % in view (1.39 times), where groups drop triangles before set-up, is even at 10 %, and "
-    "**loses 10 to 25 % on the scanned models**: testing groups and sorting the triangles of patches that reach "
-    "over the edges of the picture costs more than it saves, and set-up takes up to a third longer for the moved "
-    "vertices; why has not been found out.\n\n";
+    "(transform and clip together: 6.6 to 8.4 times). Against modern it gains on the terrain, 1.46 times with 5 % "
+    "in view, where groups drop triangles before set-up, nothing at 10 %, and 1.06 times beyond. **The scanned "
+    "models lose 2 to 23 %**, though they are transformed and clipped as without groups: set-up takes up to two "
+    "fifths longer for the moved vertices; why has not been found out.\n\n";
 
 using pipeline::Grouping;
 using pipeline::GroupingOptions;

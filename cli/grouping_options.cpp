@@ -40,6 +40,10 @@ void addGroupingOptions(CLI::App& command, GroupingArguments& a, pipeline::Group
   for (CLI::Option* option : addMetricOptions(command, a.metric)) option->group("Groups");
   add("--epsilon", a.epsilon, "0.5% or 0.005 of the longest edge of each mesh's box (default 0.5%)", "E");
   add("--parameters", a.parameters, "How parameters on lines and planes are stored (default 16bit)", "16bit|float");
+  add("--prefer", a.prefer,
+      "Draw by planes where that is faster (of planar groups: in meshes of\n900,000 vertices and more), or wherever it "
+      "saves memory\n(default speed)",
+      "speed|memory");
 }
 
 pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments, pipeline::Grouping usual) {
@@ -51,7 +55,8 @@ pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments,
     for (const auto& [given, option] : {std::pair{arguments.metric.metric.has_value(), "--metric"},
                                         {arguments.metric.limit.has_value(), "--limit"},
                                         {arguments.epsilon.has_value(), "--epsilon"},
-                                        {arguments.parameters.has_value(), "--parameters"}})
+                                        {arguments.parameters.has_value(), "--parameters"},
+                                        {arguments.prefer.has_value(), "--prefer"}})
       if (given)
         throw Error(ErrorCode::kUsage, fmt::format("{} is for grouped drawing: add --grouping planar", option));
     return options;
@@ -61,6 +66,7 @@ pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments,
   options.limit = choice.limit;
   options.epsilon = parseFraction("--epsilon", arguments.epsilon.value_or("0.5%"));
   options.form = choose("--parameters", arguments.parameters.value_or("16bit"), kParameterNames);
+  options.prefer = choose("--prefer", arguments.prefer.value_or("speed"), kPreferNames);
   return options;
 }
 
@@ -69,8 +75,10 @@ std::string groupingText(const pipeline::GroupingOptions& options) {
       fmt::format("{} groups, {} metric", nameOf(options.method, kGroupingNames), nameOf(options.metric, kMetricNames));
   if (options.metric == grouping::Metric::kQuadric)
     text += fmt::format(" with {} limit", nameOf(options.limit, kLimitNames));
-  return text + fmt::format(", epsilon {:.4g} %, {} parameters", 100.0 * options.epsilon,
-                            options.form == pipeline::ParameterForm::k16Bit ? "16-bit" : "float");
+  return text +
+         fmt::format(", epsilon {:.4g} %, {} parameters", 100.0 * options.epsilon,
+                     options.form == pipeline::ParameterForm::k16Bit ? "16-bit" : "float") +
+         (options.prefer == pipeline::Prefer::kMemory ? ", to save memory" : "");
 }
 
 nlohmann::ordered_json groupingJson(const pipeline::GroupingOptions& options) {
@@ -78,7 +86,8 @@ nlohmann::ordered_json groupingJson(const pipeline::GroupingOptions& options) {
                                  {"metric", nameOf(options.metric, kMetricNames)},
                                  {"limit", nullptr},
                                  {"epsilon", options.epsilon},
-                                 {"parameters", nameOf(options.form, kParameterNames)}};
+                                 {"parameters", nameOf(options.form, kParameterNames)},
+                                 {"prefer", nameOf(options.prefer, kPreferNames)}};
   if (options.metric == grouping::Metric::kQuadric) json["limit"] = nameOf(options.limit, kLimitNames);
   return json;
 }

@@ -27,6 +27,9 @@ inline constexpr Names<grouping::Limit, 2> kLimitNames = {
 inline constexpr Names<pipeline::ParameterForm, 2> kParameterNames = {
     {{"16bit", pipeline::ParameterForm::k16Bit}, {"float", pipeline::ParameterForm::kFloat}}};
 
+inline constexpr Names<pipeline::Prefer, 2> kPreferNames = {
+    {{"speed", pipeline::Prefer::kSpeed}, {"memory", pipeline::Prefer::kMemory}}};
+
 /// What epsilon holds, as it was written: of every command that groups, `sheaf group` too.
 struct MetricArguments {
   std::optional<std::string> metric;
@@ -50,6 +53,7 @@ struct GroupingArguments {
   MetricArguments metric;
   std::optional<std::string> epsilon;
   std::optional<std::string> parameters;
+  std::optional<std::string> prefer;
 };
 
 /// usual  the method when none is asked for

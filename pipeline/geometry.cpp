@@ -4,6 +4,8 @@
 #include <cmath>
 #include <span>
 
+#include "core/aligned.h"
+
 namespace sheaf::pipeline {
 namespace {
 
@@ -33,6 +35,29 @@ bool shadePlanes(const std::array<Vec4, 3>& corners, const Viewport& viewport, i
   return true;
 }
 
+void prefetch(const auto* begin, std::size_t count) {
+  // GCC 12 takes a function that does nothing but this for one without effect and drops its calls, except for:
+  asm volatile("");
+  const char* const bytes = reinterpret_cast<const char*>(begin);
+  for (std::size_t at = 0; at < count * sizeof(*begin); at += kCacheLine) __builtin_prefetch(bytes + at);
+}
+
+void prefetchVertices(const PatchVertices& next) {
+  const grouping::VertexRuns& vertices = *next.of_mesh;
+  const grouping::PatchRuns& at = vertices.patches[next.patch];
+  const bool is_last = next.patch + 1 == vertices.patches.size();
+  const std::size_t full_end = is_last ? vertices.full_stride : vertices.patches[next.patch + 1].first_full;
+  for (std::size_t k = 0; k < 3; ++k)
+    prefetch(vertices.full.data() + k * vertices.full_stride + at.first_full, full_end - at.first_full);
+  const auto prefetchParameters = [&](const auto& parameters) {
+    if (parameters.empty()) return;
+    const std::size_t end = is_last ? parameters.size() : vertices.patches[next.patch + 1].first_parameter;
+    prefetch(parameters.data() + at.first_parameter, end - at.first_parameter);
+  };
+  prefetchParameters(vertices.quantised);
+  prefetchParameters(vertices.parameters);
+}
+
 // Draws one patch of one instance.
 class PatchDrawer {
  public:
@@ -56,6 +81,7 @@ class PatchDrawer {
   void drawWhole() {
     worker_.clock.then(Stage::kTransform);
     transformWhole();
+    prefetchVertices(worker_.next);
     worker_.clock.then(Stage::kSetupBin);
     setUp(0, patch_.triangle_count);
   }
@@ -67,6 +93,7 @@ class PatchDrawer {
     if (!may_clip && !any_rejected_) return drawWhole();
     worker_.clock.then(Stage::kTransform);
     transformKept();
+    prefetchVertices(worker_.next);
     worker_.clock.then(Stage::kClip);
     codeVertices();
     sortTriangles();

@@ -18,12 +18,19 @@
 
 namespace sheaf::pipeline {
 
+/// The vertices of one patch.
+struct PatchVertices {
+  const grouping::VertexRuns* of_mesh = nullptr;
+  std::uint32_t patch = 0;
+};
+
 /// Scratch memory of one worker; all of it stays in its caches.
 struct GeometryWorker {
   raster::Binner binner;
   StageClock clock;
   Counters counters;
   std::vector<DrawnPatch> drawn;
+  PatchVertices next;  ///< asked for while a patch is set up, to be in the caches when their turn comes
   ClipVertices clip;
   ProjectedVertices projected;
   VertexCodes codes;

@@ -31,6 +31,12 @@ enum class Grouping : std::uint8_t {
 
 using grouping::ParameterForm;
 
+/// What planes are used for: they are one or the other on meshes that fit the caches.
+enum class Prefer : std::uint8_t {
+  kSpeed,   ///< large meshes by planes, where that is not slower; smaller ones in full, as without groups
+  kMemory,  ///< wherever it saves memory
+};
+
 /// Which vertices of each mesh are moved onto common lines or planes, and how they are then drawn. Grouping is lossy:
 /// vertices move by up to epsilon.
 struct GroupingOptions {
@@ -39,6 +45,7 @@ struct GroupingOptions {
   grouping::Limit limit = grouping::Limit::kSafe;  ///< of the quadric metric
   double epsilon = 0.005;                          ///< fraction of each mesh's extent
   ParameterForm form = ParameterForm::k16Bit;      ///< 16 bits move a vertex by up to 2^-17 of the largest patch's size
+  Prefer prefer = Prefer::kSpeed;                  ///< how planes are stored; changes no picture
   /// false: the snapped mesh drawn ungrouped: the same vertices at the same places, each stored and transformed in
   /// full. What grouped drawing is held against.
   bool use_groups = true;

@@ -190,6 +190,8 @@ void Renderer::State::drawGeometry(const PreparedScene& scene, const View& view)
       const DrawnPatch& d = drawn[i];
       const scenes::Instance& instance = scene.instances[d.instance];
       const PreparedMesh& mesh = scene.meshes[instance.mesh];
+      const DrawnPatch& next = drawn[std::min(i + 1, drawn.size() - 1)];
+      w.next = {&scene.meshes[scene.instances[next.instance].mesh].vertices, next.patch};
       drawPatch(mesh, d.patch, d.seen, instances[d.instance], !scene.double_sided[instance.material], d.instance,
                 view.viewport, w);
     }

@@ -69,11 +69,12 @@ TEST_CASE("cli/bench: the table has every stage for the three baselines, aligned
 
 TEST_CASE("cli/bench: the JSON has quartiles, items, ratios, counters and the times of each frame") {
   const TempFolder folder;
-  const Json json = benchJson(folder, {"--frames", "4", "--threads", "1"});
+  const Json json = benchJson(folder, {"--frames", "4", "--threads", "1", "--prefer", "memory"});
   CHECK(json["context"]["threads"] == 1);
   CHECK(json["context"]["flags"].get<std::string>().find("-ffp-contract=off") != std::string::npos);
   CHECK(!json["context"]["revision"].get<std::string>().empty());
   CHECK(json["grouping"]["method"] == "planar");
+  CHECK(json["grouping"]["prefer"] == "memory");
   REQUIRE(json["sections"].size() == 1);
   const Json& section = json["sections"][0];
   CHECK(section["name"] == "orbit");

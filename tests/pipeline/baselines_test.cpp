@@ -106,6 +106,7 @@ TEST_CASE("pipeline/baselines: all three draw every frame, and only what they sh
   GroupingOptions grouping;
   grouping.method = Grouping::kPlanar;
   grouping.use_groups = false;
+  grouping.prefer = Prefer::kMemory;
   BaselineBench bench(scene, grouping, settings, pool);
   CHECK(bench.vertexCount() >= scene.vertexCount());
   std::vector<double> progress;

@@ -50,6 +50,7 @@ GroupingOptions planarGroups(double epsilon) {
   options.method = Grouping::kPlanar;
   options.epsilon = epsilon;
   options.form = ParameterForm::kFloat;
+  options.prefer = Prefer::kMemory;
   return options;
 }
 
@@ -156,6 +157,7 @@ TEST_CASE("pipeline/comparison: built-in scenes are drawn right with groups, wha
       CAPTURE(spec);
       GroupingOptions options;
       options.method = method;
+      options.prefer = Prefer::kMemory;
       const Comparison result = compareGrouping(scene, cameras, options, settings, pool);
       CHECK(result.drawsRight());
       CHECK(result.geometry.eliminated() > 0.3);

@@ -20,6 +20,7 @@ GroupingOptions planar(double epsilon, ParameterForm form = ParameterForm::k16Bi
   options.method = Grouping::kPlanar;
   options.epsilon = epsilon;
   options.form = form;
+  options.prefer = Prefer::kMemory;  // so that small scenes are drawn by planes
   return options;
 }
 
@@ -90,6 +91,20 @@ TEST_CASE("pipeline/grouped: by planes, grouped and ungrouped drawing of the sna
   CHECK(grouped_vertices > 100000);
   CHECK(outside > 300);
   CHECK(inside > 300);
+}
+
+TEST_CASE("pipeline/grouped: a small mesh is stored by planes to save memory, and in full for speed") {
+  TaskPool pool(2);
+  const scenes::Scene scene = scenes::buildBuiltin("terrain?n=129");
+  const scenes::Camera camera = insideCamera(scene);
+  GroupingOptions options = planar(0.01);
+  const PreparedScene small = prepare(scene, camera, options, pool);
+  options.prefer = Prefer::kSpeed;
+  const PreparedScene fast = prepare(scene, camera, options, pool);
+  CHECK(fast.meshes[0].vertices.isFullBySlot());
+  CHECK(fast.meshes[0].vertices.runs.size() == fast.meshes[0].patches.size());
+  CHECK(small.meshes[0].vertexBytes() * 4 < fast.meshes[0].vertexBytes() * 3);
+  CHECK(samePicture(draw(small, camera, pool), draw(fast, camera, pool)));
 }
 
 TEST_CASE("pipeline/grouped: every SIMD target and thread count draws the same bytes") {

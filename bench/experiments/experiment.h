@@ -39,6 +39,9 @@ std::string writePlanes(Context& context);
 std::string writeSearch(Context& context);
 // clustering.cpp
 std::string writeClustering(Context& context);
+// patches.cpp
+std::string writePatches(Context& context);
+std::string writePatchTree(Context& context);
 // growth.cpp
 std::string writeGrowth(Context& context);
 std::string writeSimplification(Context& context);

@@ -41,6 +41,9 @@ std::string writeSearch(Context& context);
 std::string writeClustering(Context& context);
 // patch_groups.cpp
 std::string writePatchGroups(Context& context);
+// patches.cpp
+std::string writePatches(Context& context);
+std::string writePatchTree(Context& context);
 // growth.cpp
 std::string writeGrowth(Context& context);
 std::string writeSimplification(Context& context);

@@ -51,6 +51,8 @@ const std::vector<Section>& sections() {
       {"beyond", "Normals, texture coordinates, moving vertices", writeBeyond},
       {"simplification", "Simplification", writeSimplification},
       {"clustering", "Hierarchical face clustering", writeClustering},
+      {"patches", "Ways to cut a mesh into patches", writePatches},
+      {"tree", "A tree over the patches", writePatchTree},
       {"patch-groups", "Planes of patches", writePatchGroups},
   };
   return all;

@@ -25,8 +25,9 @@ constexpr int kMaxFrames = 100000;
 
 constexpr const char* kFooter =
     "Three ways to draw the same scene, frame by frame in turns: classic transforms every vertex; modern leaves out\n"
-    "patches that are out of view or face away; grouped does that too, and transforms and clips the vertices of the\n"
-    "others by groups. All use the same vectors, threads, raster and shading.\n"
+    "patches that are out of view or face away, testing each; grouped finds the same ones by way of a tree over them,\n"
+    "and transforms and clips the vertices of the others by groups. All use the same vectors, threads, raster and\n"
+    "shading.\n"
     "\n"
     "--views orbit goes around the scene, all of it in view; inside stands where 5, 25 and 50 % of the triangles are "
     "in\n"

@@ -137,7 +137,8 @@ std::string benchPage(const BenchReport& report, TaskPool& pool) {
   page.paragraph(
       fmt::format("{} triangles, {} vertices. Three ways to draw the same scene, frame by frame in turns: "
                   "classic transforms every vertex of the original mesh; modern leaves out patches that are "
-                  "out of view or face away; grouped does that too, and transforms and clips by groups: {}.",
+                  "out of view or face away, testing each; grouped finds the same ones by way of a tree over them, "
+                  "and transforms and clips by groups: {}.",
                   withCommas(report.triangles), withCommas(report.vertices), groupingText(report.grouping)));
   page.cards({{fmt::format("{:.1f} %", 100.0 * report.geometry.eliminated()), "of the vertices eliminated"},
               {fmt::format("{:.2f}", report.grouped_bytes_per_vertex),

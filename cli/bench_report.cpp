@@ -45,8 +45,8 @@ std::string headText(const BenchReport& report) {
   text += line("build", fmt::format("{}, revision {}, {}", c.build, c.revision, c.flags));
   text += line("cpu", c.cpu);
   text += line("classic", "every vertex of the original mesh");
-  text += line("modern", "patches out of view or facing away left out");
-  text += line("grouped", fmt::format("that, and {}", groupingText(report.grouping)));
+  text += line("modern", "patches out of view or facing away left out, each tested");
+  text += line("grouped", fmt::format("the same left out by way of their tree; {}", groupingText(report.grouping)));
   text += line("", fmt::format("{:.2f} % of the vertices eliminated; {:.2f} bytes per vertex, {:.2f} without groups",
                                100.0 * report.geometry.eliminated(), report.grouped_bytes_per_vertex,
                                report.original_bytes_per_vertex));

@@ -10,6 +10,7 @@
 #include "cli/interrupt.h"
 #include "cli/output.h"
 #include "core/error.h"
+#include "grouping/cluster_patches.h"
 #include "grouping/groups_file.h"
 #include "scenes/join.h"
 #include "scenes/ply_writer.h"
@@ -30,7 +31,11 @@ void checkBeforehand(const GroupRequest& request) {
 }
 
 grouping::VertexGroups search(const mesh::Mesh& mesh, const GroupRequest& request, const InterruptGuard& guard) {
-  if (request.kind == grouping::GroupKind::kPlane) return grouping::groupPlanar(mesh, request.planar);
+  if (request.method == GroupMethod::kPlanar) return grouping::groupPlanar(mesh, request.planar);
+  if (request.method == GroupMethod::kCluster) {
+    TaskPool pool;
+    return grouping::groupInPatches(mesh, grouping::clusterPatches(mesh, {}, pool), request.cluster, pool);
+  }
   ProgressLine progress("grouping", request.quiet);
   grouping::LinearOptions options = request.linear;
   options.progress = [&](double done) {

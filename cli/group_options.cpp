@@ -11,7 +11,6 @@
 namespace sheaf::cli {
 namespace {
 
-using grouping::GroupKind;
 using grouping::Limit;
 using grouping::Metric;
 
@@ -19,8 +18,10 @@ constexpr int kMaxSavedBits = 16;
 
 constexpr const char* kFooter =
     "A file or scene of several meshes is grouped as one: every instance where it stands, vertices that are equal in\n"
-    "everything joined. Lengths are fractions of the longest edge of the mesh's box. Methods and figures are those of\n"
-    "Dinerstein et al., Planar Grouping for Fast Affine Transformation and Clipping.\n"
+    "everything joined. Lengths are fractions of the longest edge of the mesh's box. Lines and planes across given\n"
+    "directions are those of Dinerstein et al., Planar Grouping for Fast Affine Transformation and Clipping. By "
+    "cluster\n"
+    "each patch of up to 256 vertices has planes that follow it; vertices where patches meet stay where they are.\n"
     "\n"
     "Linear grouping looks at every pair of vertices: 3000 take a second or so, larger meshes are cut into cells of\n"
     "3000. Ctrl-C ends it and leaves no files.\n"
@@ -39,12 +40,16 @@ constexpr const char* kFooter =
 }
 
 /// What only one method or metric knows.
-void refuseMismatches(const GroupArguments& arguments, GroupKind kind, const MetricChoice& choice) {
-  if (kind == GroupKind::kLine) {
+void refuseMismatches(const GroupArguments& arguments, GroupMethod method, const MetricChoice& choice) {
+  if (method == GroupMethod::kLinear) {
     if (arguments.planes) refuse("--planes is for planar groups: lines go through any two vertices");
     if (arguments.key) refuse("--key is for planar groups: the table of linear ones is sorted once, by its counts");
   } else if (arguments.segment_only) {
     refuse("--segment-only is for linear groups (--method linear)");
+  }
+  if (method == GroupMethod::kCluster) {
+    if (arguments.planes) refuse("--planes is for planar groups: patches of clusters have planes of their own");
+    if (arguments.key) refuse("--key is for planar groups: of a patch always that plane is next that takes most");
   }
   if (arguments.no_flips && choice.metric == Metric::kQuadric && choice.limit == Limit::kSafe)
     refuse("--no-flips: the safe limit of the quadric metric lets no face flip anyway");
@@ -74,8 +79,11 @@ std::string outputName(std::string_view option, const std::optional<std::string>
 }
 
 void addSearchOptions(CLI::App& command, GroupArguments& a) {
-  command.add_option("--method", a.method, "Lines through two vertices, or planes through one (default planar)")
-      ->type_name("linear|planar");
+  command
+      .add_option("--method", a.method,
+                  "Lines through two vertices, planes through one across given\ndirections, or planes of patches that "
+                  "are made of face clusters\n(default planar)")
+      ->type_name("linear|planar|cluster");
   addMetricOptions(command, a.metric);
   command.add_option("--epsilon", a.epsilon, "0.5% or 0.005 of the longest edge of the box (default 0.5%)")
       ->type_name("E");
@@ -111,15 +119,18 @@ void addGroupOptions(CLI::App& command, const std::shared_ptr<GroupArguments>& a
 GroupRequest understand(const GroupArguments& arguments) {
   GroupRequest request;
   request.input = arguments.input;
-  request.kind = choose("--method", arguments.method.value_or("planar"), kMethodNames);
+  request.method = choose("--method", arguments.method.value_or("planar"), kMethodNames);
   const MetricChoice choice = understandMetric(arguments.metric);
   request.planar.key = choose("--key", arguments.key.value_or("auto"), kKeyNames);
-  refuseMismatches(arguments, request.kind, choice);
+  refuseMismatches(arguments, request.method, choice);
   understandPlanes(arguments.planes.value_or("axis"), request);
-  request.planar.metric = request.linear.metric = choice.metric;
-  request.planar.limit = request.linear.limit = choice.limit;
-  request.planar.epsilon = request.linear.epsilon = parseFraction("--epsilon", arguments.epsilon.value_or("0.5%"));
-  request.planar.restore_flipped = request.linear.restore_flipped = arguments.no_flips;
+  if (request.method == GroupMethod::kCluster) request.plane_set = "a frame for each patch";
+  const double epsilon = parseFraction("--epsilon", arguments.epsilon.value_or("0.5%"));
+  request.planar.metric = request.linear.metric = request.cluster.metric = choice.metric;
+  request.planar.limit = request.linear.limit = request.cluster.limit = choice.limit;
+  request.planar.epsilon = request.linear.epsilon = request.cluster.epsilon = epsilon;
+  request.planar.restore_flipped = request.linear.restore_flipped = request.cluster.restore_flipped =
+      arguments.no_flips;
   request.linear.segment_only = arguments.segment_only;
   request.output = outputName("-o", arguments.output, ".sheaf");
   request.snapped = outputName("--snapped", arguments.snapped, ".ply");

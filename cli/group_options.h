@@ -8,6 +8,7 @@
 #include "cli/grouping_options.h"
 #include "cli/names.h"
 #include "grouping/linear_groups.h"
+#include "grouping/patch_groups.h"
 #include "grouping/planar_groups.h"
 
 namespace CLI {
@@ -16,8 +17,9 @@ class App;
 
 namespace sheaf::cli {
 
-inline constexpr Names<grouping::GroupKind, 2> kMethodNames = {
-    {{"linear", grouping::GroupKind::kLine}, {"planar", grouping::GroupKind::kPlane}}};
+enum class GroupMethod { kLinear, kPlanar, kCluster };
+inline constexpr Names<GroupMethod, 3> kMethodNames = {
+    {{"linear", GroupMethod::kLinear}, {"planar", GroupMethod::kPlanar}, {"cluster", GroupMethod::kCluster}}};
 inline constexpr Names<grouping::TableKey, 4> kKeyNames = {{{"auto", grouping::TableKey::kAuto},
                                                             {"union", grouping::TableKey::kUnion},
                                                             {"sum", grouping::TableKey::kSum},
@@ -41,12 +43,13 @@ struct GroupArguments {
   bool quiet = false;
 };
 
-/// The same, understood and checked. Of `planar` and `linear` the one counts that `kind` says.
+/// The same, understood and checked. Of `planar`, `linear` and `cluster` the one counts that `method` says.
 struct GroupRequest {
   std::string input;
-  grouping::GroupKind kind = grouping::GroupKind::kPlane;
+  GroupMethod method = GroupMethod::kPlanar;
   grouping::PlanarOptions planar;
   grouping::LinearOptions linear;
+  grouping::PatchGroupOptions cluster;
   std::string plane_set;   ///< for the report: "3 axis planes"
   std::string plane_file;  ///< from which planar.planes are to be read
   std::string output;

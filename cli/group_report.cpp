@@ -14,9 +14,11 @@ using grouping::VertexGroups;
 
 std::string methodText(const GroupReport& report) {
   const VertexGroups& groups = report.groups;
-  std::string text = groups.kind == GroupKind::kPlane
-                         ? fmt::format("planar, {}", report.request.plane_set)
-                         : fmt::format("linear{}", groups.segment_only ? ", segments" : "");
+  std::string text(nameOf(report.request.method, kMethodNames));
+  if (groups.kind == GroupKind::kPlane)
+    text += ", " + report.request.plane_set;
+  else if (groups.segment_only)
+    text += ", segments";
   text += fmt::format("; {} metric", nameOf(groups.metric, kMetricNames));
   if (groups.metric == Metric::kQuadric) text += fmt::format(", {} limit", nameOf(groups.limit, kLimitNames));
   return text;
@@ -66,12 +68,11 @@ std::string groupJson(const GroupReport& report) {
   const VertexGroups& groups = report.groups;
   const GroupingStats& stats = groups.stats;
   const grouping::CompressionFigures& c = report.compression;
-  const bool planar = groups.kind == GroupKind::kPlane;
   Json json = {{"name", report.name},
                {"vertices", report.mesh_vertices},
                {"triangles", report.mesh_triangles},
                {"extent", groups.extent},
-               {"method", nameOf(groups.kind, kMethodNames)},
+               {"method", nameOf(report.request.method, kMethodNames)},
                {"metric", nameOf(groups.metric, kMetricNames)},
                {"limit", nullptr},
                {"epsilon", groups.epsilon},
@@ -102,10 +103,8 @@ std::string groupJson(const GroupReport& report) {
                {"search_ms", stats.search_ms},
                {"warnings", report.warnings}};
   if (groups.metric == Metric::kQuadric) json["limit"] = nameOf(groups.limit, kLimitNames);
-  if (planar) {
-    json["planes"] = groups.planes.size();
-    json["key"] = nameOf(report.request.planar.key, kKeyNames);
-  }
+  if (groups.kind == GroupKind::kPlane) json["planes"] = groups.planes.size();
+  if (report.request.method == GroupMethod::kPlanar) json["key"] = nameOf(report.request.planar.key, kKeyNames);
   // Names come from files and need not be UTF-8.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

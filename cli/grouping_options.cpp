@@ -34,8 +34,9 @@ void addGroupingOptions(CLI::App& command, GroupingArguments& a, pipeline::Group
   add("--grouping", a.grouping,
       may_be_none ? "Move vertices onto common lines or planes, by up to epsilon, and\ntransform them together: lossy "
                     "(default none)"
-                  : "Lines through two vertices, or planes through one (default planar)",
-      may_be_none ? "none|linear|planar" : "linear|planar");
+                  : "Lines through two vertices, planes across an axis, or planes of\npatches that are made of face "
+                    "clusters (default planar)",
+      may_be_none ? "none|linear|planar|cluster" : "linear|planar|cluster");
   for (CLI::Option* option : addMetricOptions(command, a.metric)) option->group("Groups");
   add("--epsilon", a.epsilon, "0.5% or 0.005 of the longest edge of each mesh's box (default 0.5%)", "E");
   add("--parameters", a.parameters, "How parameters on lines and planes are stored (default 16bit)", "16bit|float");

@@ -16,9 +16,10 @@ class Option;
 
 namespace sheaf::cli {
 
-inline constexpr Names<pipeline::Grouping, 3> kGroupingNames = {{{"none", pipeline::Grouping::kNone},
+inline constexpr Names<pipeline::Grouping, 4> kGroupingNames = {{{"none", pipeline::Grouping::kNone},
                                                                  {"linear", pipeline::Grouping::kLinear},
-                                                                 {"planar", pipeline::Grouping::kPlanar}}};
+                                                                 {"planar", pipeline::Grouping::kPlanar},
+                                                                 {"cluster", pipeline::Grouping::kCluster}}};
 inline constexpr Names<grouping::Metric, 2> kMetricNames = {
     {{"distance", grouping::Metric::kDistance}, {"quadric", grouping::Metric::kQuadric}}};
 inline constexpr Names<grouping::Limit, 2> kLimitNames = {

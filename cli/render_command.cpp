@@ -104,7 +104,7 @@ int runRender(const RenderRequest& request) {
   pipeline::RenderSettings settings;
   settings.width = request.size.width;
   settings.height = request.size.height;
-  settings.cull_patches = request.cull_patches;
+  settings.culling = request.culling;
   settings.background = backgroundOf(request, scene);
   settings.want_srgb = !outputIsLinear(request);
   settings.want_linear = !settings.want_srgb || request.color_by;

@@ -154,7 +154,7 @@ RenderRequest understand(const RenderArguments& arguments) {
   understandScene(arguments, request);
   understandMeasuring(arguments, request);
   understandOutput(arguments, request);
-  request.cull_patches = !arguments.no_patch_culling;
+  if (arguments.no_patch_culling) request.culling = pipeline::Culling::kNone;
   request.grouping = understandGrouping(arguments.grouping, pipeline::Grouping::kNone);
   understandColors(arguments, request);
   return request;

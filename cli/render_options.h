@@ -31,7 +31,7 @@ struct RenderArguments : SceneArguments {
 /// The same, understood and checked: every value in range, no options that contradict each other.
 struct RenderRequest : SceneRequest {
   std::string output;  ///< "-": PNG to stdout; empty: nothing is written
-  bool cull_patches = true;
+  pipeline::Culling culling = pipeline::Culling::kTree;
   pipeline::GroupingOptions grouping;
   std::optional<ColorBy> color_by;
   CutRequest cut;  ///< of kCluster; its overlay of all

@@ -8,11 +8,20 @@
 #include <cassert>
 #include <cmath>
 
+#include "grouping/plane_sets.h"
+
 namespace sheaf::grouping {
 namespace {
 
 // Origin or end of a group, plane, and number of members: what a record needs beside the members.
 constexpr double kRecordBits = 32.0 + 8.0 + 32.0;
+// Three angles of a frame.
+constexpr double kFrameBits = 3.0 * 16.0;
+
+// Those of the axes need not be stored.
+double frameBits(const VertexGroups& groups) {
+  return groups.planes == axisPlanes() ? 0.0 : kFrameBits * static_cast<double>(groups.planes.size());
+}
 
 // Place of each vertex in an order that puts vertices of neighbouring triangles together; unused vertices come last.
 std::vector<std::uint32_t> placesOf(const mesh::Mesh& mesh) {
@@ -125,7 +134,7 @@ CompressionFigures measureCompression(const mesh::Mesh& mesh, const VertexGroups
   std::size_t kept_bases = 0;
   for (const VertexGroup& g : groups.groups)
     kept_bases += (g.origin == kNoIndex) + (g.kind == GroupKind::kLine && g.end == kNoIndex);
-  const double records = kRecordBits * static_cast<double>(groups.groups.size());
+  const double records = kRecordBits * static_cast<double>(groups.groups.size()) + frameBits(groups);
   const double positions = 3.0 * bits * static_cast<double>(retained.size() + kept_bases);
   figures.grouped_retained = per_vertex * (positions + records);
   figures.grouped_order = per_vertex * orderBits(groups, place);

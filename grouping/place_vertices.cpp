@@ -176,12 +176,38 @@ void placeOnGroups(const VertexGroups& groups, PlacedVertices& placed) {
   }
 }
 
+Vec3 pointIn(const PatchFrame& frame, const Vec3& p) {
+  return Vec3(DVec3(frame.origin) + double{p.x} * DVec3(frame.axes.axis_s) + double{p.y} * DVec3(frame.axes.axis_t) +
+              double{p.z} * DVec3(frame.axes.normal));
+}
+
+// The frame of each patch has its origin on its first plane, near its vertices whatever the mesh's own origin.
+void placeInFrame(const VertexGroup& g, std::span<const std::uint32_t> members, const VertexGroups& groups,
+                  const PatchFrame& frame, PlacedVertices& placed) {
+  const auto inFrame = [&](const Vec3& p) {
+    const DVec3 d = DVec3(p) - DVec3(frame.origin);
+    return Vec3(glm::dot(d, DVec3(frame.axes.axis_s)), glm::dot(d, DVec3(frame.axes.axis_t)),
+                glm::dot(d, DVec3(frame.axes.normal)));
+  };
+  VertexPlace place;
+  place.kind = RunKind::kPlane;
+  place.axis = 2;
+  place.plane = inFrame(g.base).z;
+  for (const std::uint32_t v : members) {
+    placed.places[v] = place;
+    placed.in_frame[v] = inFrame(groups.positions[v]);
+    placed.in_frame[v].z = place.plane;
+  }
+}
+
 // Of planes: the power of two at which every patch fits 16 bits and every coordinate 24.
 float gridStep(const PlacedVertices& placed, const PatchSet& set) {
   double size = 0.0, farthest = 0.0;
   for (const Patch& patch : set.patches) {
     Box3 box;
-    for (const std::uint32_t v : verticesOf(patch, set)) box.extend(placed.positions[v]);
+    for (const std::uint32_t v : verticesOf(patch, set))
+      if (placed.places[v].kind == RunKind::kPlane) box.extend(placed.coordinatesOf(v));
+    if (box.empty()) continue;
     size = std::max(size, double{box.longestEdge()});
     for (int k = 0; k < 3; ++k)
       farthest = std::max({farthest, std::abs(double{box.lo[k]}), std::abs(double{box.hi[k]})});
@@ -195,10 +221,9 @@ void quantise(const PatchSet& set, PlacedVertices& placed) {
   for (std::size_t v = 0; v < placed.places.size(); ++v) {
     VertexPlace& place = placed.places[v];
     if (place.kind == RunKind::kPlane) {
+      Vec3& p = placed.frames.empty() ? placed.positions[v] : placed.in_frame[v];
       for (int k = 0; k < 3; ++k)
-        if (k != place.axis)
-          placed.positions[v][k] =
-              static_cast<float>(std::nearbyint(double{placed.positions[v][k]} / placed.step)) * placed.step;
+        if (k != place.axis) p[k] = static_cast<float>(std::nearbyint(double{p[k]} / placed.step)) * placed.step;
     } else if (place.kind == RunKind::kLine) {
       const RunLine& line = placed.lines[place.line];
       const float q = line.ds > 0.0F ? std::nearbyint((place.s - line.s0) / line.ds) : 0.0F;
@@ -224,6 +249,31 @@ PlacedVertices placeGrouped(const mesh::Mesh& mesh, const VertexGroups& groups, 
     placeOnGroups(groups, placed);
   }
   if (form == ParameterForm::k16Bit) quantise(patches, placed);
+  return placed;
+}
+
+PlacedVertices placeInFrames(const mesh::Mesh& mesh, const VertexGroups& groups, const PatchSet& patches,
+                             ParameterForm form) {
+  assert(groups.positions.size() == mesh.vertexCount() && groups.planes.size() == patches.patches.size());
+  PlacedVertices placed;
+  placed.positions = groups.positions;
+  placed.places.resize(mesh.vertexCount());
+  placed.in_frame.resize(mesh.vertexCount());
+  placed.frames.resize(patches.patches.size());
+  placed.form = form;
+  std::vector<std::uint32_t> patch_of(mesh.vertexCount(), kNoIndex);  // of members
+  std::uint32_t last = kNoIndex;
+  for (const VertexGroup& g : groups.groups) {
+    PatchFrame& frame = placed.frames[g.plane];
+    if (g.plane != last) frame = {g.base, groups.planes[g.plane]};
+    last = g.plane;
+    const auto members = std::span(groups.members).subspan(g.first_member, g.member_count);
+    placeInFrame(g, members, groups, frame, placed);
+    for (const std::uint32_t v : members) patch_of[v] = g.plane;
+  }
+  if (form == ParameterForm::k16Bit) quantise(patches, placed);
+  for (std::size_t v = 0; v < patch_of.size(); ++v)
+    if (patch_of[v] != kNoIndex) placed.positions[v] = pointIn(placed.frames[patch_of[v]], placed.in_frame[v]);
   return placed;
 }
 

@@ -101,7 +101,7 @@ class PatchSorter {
       float s_min = std::numeric_limits<float>::infinity(), s_max = -s_min;
       for (std::uint32_t i = begin; i < end; ++i) {
         const std::uint32_t v = set_.vertex_source[patch.first_vertex + i];
-        box.extend(placed_.positions[v]);
+        box.extend(place.kind == RunKind::kPlane ? placed_.coordinatesOf(v) : placed_.positions[v]);
         s_min = std::min(s_min, placed_.places[v].s);
         s_max = std::max(s_max, placed_.places[v].s);
         run_of_[i] = static_cast<std::uint16_t>(runs.size());
@@ -187,7 +187,7 @@ class PatchFiller {
 
  private:
   std::int32_t gridNumber(std::uint32_t v, std::size_t k) const {
-    return static_cast<std::int32_t>(placed_.positions[v][static_cast<int>(k)] / out_.step);
+    return static_cast<std::int32_t>(placed_.coordinatesOf(v)[static_cast<int>(k)] / out_.step);
   }
 
   void findCorner(PatchRuns& at, std::uint32_t vertex_count) const {
@@ -208,7 +208,7 @@ class PatchFiller {
 
   void storeOnPlane(std::uint32_t v, std::size_t axis) {
     const auto [i, j] = axesBeside(axis);
-    const Vec3& p = placed_.positions[v];
+    const Vec3& p = placed_.coordinatesOf(v);
     if (out_.form == ParameterForm::kFloat)
       out_.parameters[parameter_] = {p[static_cast<int>(i)], p[static_cast<int>(j)]};
     else
@@ -275,6 +275,17 @@ bool joinRuns(const std::vector<std::vector<VertexRun>>& runs, VertexRuns& out) 
   return false;
 }
 
+// Those of patches that have planes.
+void keepFrames(const PlacedVertices& placed, VertexRuns& out) {
+  for (std::size_t p = 0; p < placed.frames.size(); ++p) {
+    PatchRuns& at = out.patches[p];
+    const auto runs = std::span(out.runs).subspan(at.first_run, at.run_count);
+    if (std::none_of(runs.begin(), runs.end(), [](const VertexRun& r) { return r.kind == RunKind::kPlane; })) continue;
+    at.frame = static_cast<std::uint32_t>(out.frames.size());
+    out.frames.push_back(placed.frames[p]);
+  }
+}
+
 std::uint64_t bytesOf(const auto& v) {
   return v.size() * sizeof(v[0]);
 }
@@ -282,7 +293,7 @@ std::uint64_t bytesOf(const auto& v) {
 }  // namespace
 
 std::uint64_t VertexRuns::bytes() const {
-  std::uint64_t sum = bytesOf(patches) + bytesOf(runs) + bytesOf(lines);
+  std::uint64_t sum = bytesOf(patches) + bytesOf(runs) + bytesOf(lines) + bytesOf(frames);
   return sum + bytesOf(full) + bytesOf(quantised) + bytesOf(parameters);
 }
 
@@ -308,12 +319,14 @@ VertexRuns buildVertexRuns(const PlacedVertices& placed, std::uint32_t min_plane
   std::vector<std::vector<VertexRun>> runs(patches.patches.size());
   forPatches(runs.size(), pool,
              [&](std::size_t p) { runs[p] = PatchSorter(placed, min_plane_run, patches).sort(patches.patches[p]); });
-  if (joinRuns(runs, out))
+  if (joinRuns(runs, out)) {
     fillBySlot(placed.positions, patches, pool, out);
-  else
-    forPatches(runs.size(), pool, [&](std::size_t p) {
-      PatchFiller(placed, patches.patches[p], patches, out).fill(out.patches[p], patches.patches[p].vertex_count);
-    });
+    return out;
+  }
+  keepFrames(placed, out);
+  forPatches(runs.size(), pool, [&](std::size_t p) {
+    PatchFiller(placed, patches.patches[p], patches, out).fill(out.patches[p], patches.patches[p].vertex_count);
+  });
   return out;
 }
 

@@ -4,6 +4,8 @@
 //          the base of [PG] eq. 2 is the plane's point with zeros elsewhere and s, t are the other two coordinates as
 //          they are, so that a vertex is transformed by the products and sums of transforming (x, y, z) in full, of
 //          which those with c are made once: the results are equal to the bit.
+//   Frames A patch may have a frame of its own, in which all its planes are z = c; its vertices in full and its lines
+//          stay in object space.
 //   16 bit Coordinates on planes are multiples of a power of two, so that n * step is exact and so is scaling the
 //          matrix by step. The grid is one for the whole mesh and counted from each patch's corner: patches that share
 //          a vertex have it at the same place.
@@ -39,16 +41,22 @@ constexpr std::pair<std::size_t, std::size_t> axesBeside(std::size_t axis) {
   return {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
 }
 
+/// Object space from a patch's own: origin + x axis_s + y axis_t + z normal.
+struct PatchFrame {
+  Vec3 origin{0.0F};
+  PlaneFrame axes{{0.0F, 0.0F, 1.0F}, {1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}};
+};
+
 /// Consecutive vertices of a patch that are stored alike.
 struct VertexRun {
   RunKind kind = RunKind::kFull;
-  std::uint8_t axis = 0;             ///< kPlane: which coordinate is common
+  std::uint8_t axis = 0;             ///< kPlane: which coordinate is common; 2 in a patch's own frame
   std::uint16_t vertex_count = 0;    ///< [1, 256]
   std::uint16_t triangle_count = 0;  ///< triangles with all corners in this run; they stand together, run by run
   float plane = 0.0F;                ///< kPlane: its value
   std::uint32_t line = kNoIndex;     ///< kLine: into VertexRuns::lines
-  Vec3 corner_lo{0.0F};              ///< box of the vertices; of a line: the end of least parameter
-  Vec3 corner_hi{0.0F};              ///< of a line: the end of greatest parameter
+  Vec3 corner_lo{0.0F};              ///< box of the vertices, of a plane in its space; of a line: the end of least s
+  Vec3 corner_hi{0.0F};              ///< of a line: the end of greatest s
 };
 
 /// Points base + s * direction, s = s0 + q * ds for a stored q.
@@ -66,6 +74,7 @@ struct PatchRuns {
   std::uint32_t first_full = 0;
   std::uint32_t first_parameter = 0;
   std::array<std::int32_t, 3> corner{};  ///< of 16-bit coordinates: coordinate = (corner + q) * step
+  std::uint32_t frame = kNoIndex;        ///< of its planes, into VertexRuns::frames; kNoIndex: object space
 };
 
 /// Arrays are readable kRunAlignment elements beyond their last vertex.
@@ -73,6 +82,7 @@ struct VertexRuns {
   std::vector<PatchRuns> patches;  ///< #patches
   std::vector<VertexRun> runs;     ///< by patch: full ones, planes, lines
   std::vector<RunLine> lines;
+  std::vector<PatchFrame> frames;
   /// Vertices stored in full: all x, then all y, then all z, full_stride apart, so that each is one stream of memory
   /// from patch to patch, and long stretches begin a cache line. Where nothing is grouped they are indexed as
   /// PatchSet::vertex_source, padding included.
@@ -106,8 +116,15 @@ struct PlacedVertices {
   std::vector<Vec3> positions;      ///< #V
   std::vector<VertexPlace> places;  ///< #V
   std::vector<RunLine> lines;
+  std::vector<PatchFrame> frames;  ///< #patches, or empty: planes are in object space
+  std::vector<Vec3> in_frame;      ///< #V if there are frames: of vertices on planes, (s, t, plane) in their patch's
   ParameterForm form = ParameterForm::k16Bit;
   float step = 1.0F;
+
+  /// In the space of its plane.
+  const Vec3& coordinatesOf(std::uint32_t v) const {
+    return frames.empty() || places[v].kind != RunKind::kPlane ? positions[v] : in_frame[v];
+  }
 };
 
 /// Vertices where a grouping puts them. By distance on axis planes, a vertex goes to that plane within epsilon which
@@ -116,6 +133,10 @@ struct PlacedVertices {
 /// groups  of this mesh; planes must be axisPlanes()
 PlacedVertices placeGrouped(const mesh::Mesh& mesh, const VertexGroups& groups, const PatchSet& patches,
                             ParameterForm form);
+
+/// The same for groups of groupInPatches(), made of this mesh and these patches.
+PlacedVertices placeInFrames(const mesh::Mesh& mesh, const VertexGroups& groups, const PatchSet& patches,
+                             ParameterForm form);
 
 /// One run per patch, of all its vertices in full, in their order.
 VertexRuns ungroupedRuns(const mesh::Mesh& mesh, const PatchSet& patches, TaskPool& pool);

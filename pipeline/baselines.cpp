@@ -12,6 +12,8 @@ constexpr auto kClassic = static_cast<std::size_t>(Baseline::kClassic);
 constexpr auto kModern = static_cast<std::size_t>(Baseline::kModern);
 constexpr auto kGrouped = static_cast<std::size_t>(Baseline::kGrouped);
 
+constexpr PerBaseline<Culling> kCulling = {Culling::kNone, Culling::kPatches, Culling::kTree};
+
 double toMs(std::int64_t ns) {
   return static_cast<double>(ns) * 1e-6;
 }
@@ -113,7 +115,7 @@ BaselineRun BaselineBench::run(std::span<const scenes::Camera> cameras, int fram
     const std::size_t view = static_cast<std::size_t>(f) % cameras.size();
     result.frames.emplace_back();
     for (std::size_t b = 0; b < kBaselineCount; ++b) {
-      settings_.cull_patches = b != kClassic;
+      settings_.culling = kCulling[b];
       const PreparedScene& scene = b == kGrouped ? grouped_ : original_;
       renderer_.render(scene, cameras[view], settings_, drawn_[b]);
       const std::int64_t begin_ns = nowNs();

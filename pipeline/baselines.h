@@ -1,7 +1,8 @@
 // pipeline/baselines: what vertex groups gain in time: three ways to draw the same scene, timed in turns.
 //   classic  every vertex of every patch of the original mesh
-//   modern   the same mesh, patches outside the view or facing away left out
-//   grouped  patches likewise; of the others vertices are transformed and clipped by groups
+//   modern   the same mesh, patches outside the view or facing away left out, each tested by itself
+//   grouped  the same patches are left out, found by way of the tree over them; of the others vertices are transformed
+//            and clipped by groups
 // All three run through the same raster and the same shading, with the same vectors and threads.
 #pragma once
 
@@ -37,7 +38,7 @@ struct BaselineRun {
 class BaselineBench {
  public:
   /// grouping  use_groups does not count
-  /// settings  cull_patches does not count
+  /// settings  culling does not count
   BaselineBench(const scenes::Scene& scene, GroupingOptions grouping, RenderSettings settings, TaskPool& pool);
 
   const PreparedScene& original() const { return original_; }

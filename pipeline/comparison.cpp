@@ -46,7 +46,7 @@ PictureDifference differenceOf(const Frame& a, const Frame& b) {
 }  // namespace
 
 double maxDrawingDifference(Grouping method) {
-  return method == Grouping::kLinear ? 0.01 : 0.0;
+  return method == Grouping::kLinear || method == Grouping::kCluster ? 0.01 : 0.0;
 }
 
 double GeometricError::eliminated() const {

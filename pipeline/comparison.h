@@ -18,8 +18,9 @@
 namespace sheaf::pipeline {
 
 /// What share of a picture's pixels may differ between grouped drawing and the snapped mesh drawn ungrouped. By planes
-/// none: vertices come out the same to the bit. By lines a hundredth: V1' + s L' rounds otherwise than M (V1 + s L), by
-/// less than a subpixel, so that pixels whose centres lie on an edge may show the triangle beside it.
+/// across an axis none: vertices come out the same to the bit. By lines and by planes of patches a hundredth:
+/// V1' + s S' + t T' rounds otherwise than M (V1 + s S + t T), by less than a subpixel, so that pixels whose centres
+/// lie on an edge may show the triangle beside it.
 double maxDrawingDifference(Grouping method);
 
 struct PictureDifference {

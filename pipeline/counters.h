@@ -12,6 +12,7 @@ struct Counters {
   std::uint64_t patches = 0;                ///< patches of all instances
   std::uint64_t patches_outside = 0;        ///< rejected by the view volume
   std::uint64_t patches_back_facing = 0;    ///< rejected by the normal cone
+  std::uint64_t boxes_tested = 0;           ///< against the view volume: of patches and of runs of patches
   std::uint64_t vertices_transformed = 0;   ///< in any way; of these
   std::uint64_t vertices_full = 0;          ///< from three coordinates
   std::uint64_t vertices_grouped = 0;       ///< from the parameters of a line or plane
@@ -36,11 +37,12 @@ struct Counters {
 };
 
 /// Every counter under the name that reports give it.
-inline constexpr std::array<std::pair<const char*, std::uint64_t Counters::*>, 23> kCounterNames = {{
+inline constexpr std::array<std::pair<const char*, std::uint64_t Counters::*>, 24> kCounterNames = {{
     {"instances", &Counters::instances},
     {"patches", &Counters::patches},
     {"patches_outside", &Counters::patches_outside},
     {"patches_back_facing", &Counters::patches_back_facing},
+    {"boxes_tested", &Counters::boxes_tested},
     {"vertices_transformed", &Counters::vertices_transformed},
     {"vertices_full", &Counters::vertices_full},
     {"vertices_grouped", &Counters::vertices_grouped},

@@ -41,19 +41,6 @@ bool crosses(const Vec4& plane, const Box3& box) {
   return rangeOver(plane, box).lo < slackOver(plane, box);
 }
 
-RunPlanes runPlanes(const InstanceView& view, const Vec4& w) {
-  RunPlanes planes{};
-  std::size_t i = 0;
-  const auto add = [&](const Vec4& plane) {
-    for (int k = 0; k < 4; ++k) planes.coefficient[k][i] = plane[k];
-    ++i;
-  };
-  for (const Vec4& plane : view.view_planes) add(plane);
-  for (const Vec4& plane : view.guard_planes) add(plane);
-  add(w);
-  return planes;
-}
-
 // Every triangle of the patch is seen from behind: the eye lies behind the plane of each, wherever in the patch's
 // sphere and whichever normal of the cone.
 bool isBackFacing(const grouping::Patch& patch, const Vec4& eye_object) {
@@ -69,6 +56,19 @@ bool isBackFacing(const grouping::Patch& patch, const Vec4& eye_object) {
 
 }  // namespace
 
+RunPlanes runPlanes(const Mat4& clip_from_space, const Viewport& viewport) {
+  RunPlanes planes{};
+  for (int k = 0; k < 4; ++k) {
+    const Vec4& m = clip_from_space[k];
+    const float guard_x = viewport.guard_x * m.w, guard_y = viewport.guard_y * m.w;
+    const float tests[] = {m.w + m.x,     m.w - m.x,     m.w + m.y,     m.w - m.y,     m.z, m.w - m.z,
+                           guard_x + m.x, guard_x - m.x, guard_y + m.y, guard_y - m.y, m.w};
+    static_assert(std::size(tests) == RunPlanes::kCount);
+    std::copy(std::begin(tests), std::end(tests), planes.coefficient[k]);
+  }
+  return planes;
+}
+
 InstanceView viewInstance(const scenes::Instance& instance, const Box3& bounds_object, const View& view, bool cull) {
   InstanceView out;
   out.clip_from_object = Mat4(view.clip_from_world * instance.world_from_object);
@@ -80,7 +80,7 @@ InstanceView viewInstance(const scenes::Instance& instance, const Box3& bounds_o
   const Vec4 guard_x = view.viewport.guard_x * w;
   const Vec4 guard_y = view.viewport.guard_y * w;
   out.guard_planes = {guard_x + x, guard_x - x, guard_y + y, guard_y - y};
-  out.run_planes = runPlanes(out, w);
+  out.run_planes = runPlanes(out.clip_from_object, view.viewport);
   const DMat4 object_from_world = glm::inverse(instance.world_from_object);
   out.eye_object = Vec4(object_from_world * view.eye_world);
   out.mirrored = glm::determinant(DMat3(instance.world_from_object)) < 0.0;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/math.h"
+#include "grouping/patch_tree.h"
 #include "grouping/patches.h"
 #include "grouping/vertex_runs.h"
 #include "pipeline/counters.h"
@@ -23,13 +24,15 @@ struct View {
   Viewport viewport;
 };
 
-/// The tests of outcodeVertex() as linear functions of object space: x, y, z and constant coefficients of w + x, w - x,
-/// w + y, w - y, z, w - z, the four of the guard band, and w itself. A bit of Outcode belongs to each but the last,
-/// which stands in for kOutNear.
+/// The tests of outcodeVertex() as linear functions of a space that vertices are in: x, y, z and constant coefficients
+/// of w + x, w - x, w + y, w - y, z, w - z, the four of the guard band, and w itself. A bit of Outcode belongs to each
+/// but the last, which stands in for kOutNear.
 struct alignas(64) RunPlanes {
   static constexpr std::size_t kCount = 11;
   float coefficient[4][16];
 };
+
+RunPlanes runPlanes(const Mat4& clip_from_space, const Viewport& viewport);
 
 /// Of the sum of magnitudes: a bound of the rounding in a run's test and in the transform of its vertices.
 inline constexpr float kCodeSlack = 16.0F / (1 << 24);
@@ -41,8 +44,8 @@ struct InstanceView {
   /// by (near and far again, guard band).
   std::array<Vec4, 6> view_planes;
   std::array<Vec4, 4> guard_planes;
-  RunPlanes run_planes;
-  Vec4 eye_object;  ///< as View::eye_world
+  RunPlanes run_planes;  ///< of object space
+  Vec4 eye_object;       ///< as View::eye_world
   bool visible = true;
   bool mirrored = false;  ///< the transform turns the winding round
 };
@@ -58,8 +61,29 @@ enum class PatchVisibility : std::uint8_t {
   kInside,       ///< wholly in view
 };
 
-/// back_faces_culled: false skips the cone test. Conservative: a visible patch is never kOutside.
+/// back_faces_culled: false skips the cone test. Conservative: a visible patch is never kOutside. The plain reference
+/// of the two functions below.
 PatchVisibility classifyPatch(const grouping::Patch& patch, const InstanceView& view, bool back_faces_culled);
+
+/// What the view says of the boxes of a block, a bit for each.
+struct BoxBits {
+  std::uint32_t outside = 0;
+  std::uint32_t clips = 0;    ///< crosses near, far or the guard band
+  std::uint32_t crosses = 0;  ///< crosses an edge of the picture
+
+  /// Of a box that is not outside.
+  PatchVisibility visibilityOf(std::uint32_t lane) const {
+    if ((clips >> lane & 1U) != 0) return PatchVisibility::kStraddling;
+    return (crosses >> lane & 1U) != 0 ? PatchVisibility::kAcrossSides : PatchVisibility::kInside;
+  }
+};
+
+/// A box around others is outside only if all of them are, and crosses a plane if one of them does: not only nearly,
+/// because every operation of the test is monotone, rounding included.
+BoxBits classifyBoxes(const grouping::BoxBlock& boxes, const InstanceView& view);
+/// Bits of the patches that are seen from behind.
+std::uint32_t findBackFacing(const grouping::BoxBlock& boxes, const grouping::ConeBlock& cones,
+                             const InstanceView& view);
 
 /// Outcodes of all members of a run at once: `must` has the bits that every member has, `may` those that any may have.
 struct RunCodes {

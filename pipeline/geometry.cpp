@@ -104,7 +104,7 @@ class PatchDrawer {
       worker_.run_codes[0] = {0, kOutsideBits | kClipBits};
       return;
     }
-    codeRuns(runs(), view_.run_planes, worker_.run_codes.data());
+    codeAllRuns();
     worker_.counters.groups_tested += at_.run_count;
     for (std::size_t r = 0; r < at_.run_count; ++r) {
       // The patch's box has a slack of its own; what it says of clipping holds.
@@ -115,6 +115,15 @@ class PatchDrawer {
         ++worker_.counters.groups_inside;
       any_rejected_ = any_rejected_ || isRejected(r);
     }
+  }
+
+  // Vertices in full are in object space, and their run is the first.
+  void codeAllRuns() {
+    if (at_.frame == grouping::kNoIndex) return codeRuns(runs(), view_.run_planes, worker_.run_codes.data());
+    const std::size_t in_full = runs()[0].kind == grouping::RunKind::kFull ? 1 : 0;
+    codeRuns(runs().first(in_full), view_.run_planes, worker_.run_codes.data());
+    const RunPlanes planes = runPlanes(clipFromPlanes(mesh_.vertices, at_, view_.clip_from_object), viewport_);
+    codeRuns(runs().subspan(in_full), planes, worker_.run_codes.data() + in_full);
   }
 
   void transformKept() {

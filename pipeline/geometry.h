@@ -9,6 +9,7 @@
 #include "pipeline/clip.h"
 #include "pipeline/counters.h"
 #include "pipeline/cull.h"
+#include "pipeline/patch_culling.h"
 #include "pipeline/prepare.h"
 #include "pipeline/transform.h"
 #include "raster/bins.h"
@@ -16,13 +17,6 @@
 #include "raster/tile.h"
 
 namespace sheaf::pipeline {
-
-/// A patch of an instance that survived culling.
-struct DrawnPatch {
-  std::uint32_t instance;
-  std::uint32_t patch;
-  PatchVisibility seen;  ///< not outside, not back-facing
-};
 
 /// Scratch memory of one worker; all of it stays in its caches.
 struct GeometryWorker {

@@ -147,10 +147,18 @@ mesh::Mesh patchBoxesOf(const PreparedMesh& mesh, double extent) {
 
 mesh::Mesh groupPlanesOf(const PreparedMesh& mesh, double extent) {
   Bars bars(extent);
-  for (const grouping::VertexRun& run : mesh.vertices.runs) {
-    const DVec3 lo(run.corner_lo), hi(run.corner_hi);
-    if (run.kind == grouping::RunKind::kPlane) bars.addLattice({}, run.axis, lo, hi);
-    if (run.kind == grouping::RunKind::kLine) bars.addSegment(lo, hi);
+  for (const grouping::PatchRuns& patch : mesh.vertices.patches) {
+    Frame frame;
+    if (patch.frame != grouping::kNoIndex) {
+      const grouping::PatchFrame& own = mesh.vertices.frames[patch.frame];
+      frame = {DVec3(own.origin), DMat3(DVec3(own.axes.axis_s), DVec3(own.axes.axis_t), DVec3(own.axes.normal))};
+    }
+    for (std::uint32_t r = patch.first_run; r < patch.first_run + patch.run_count; ++r) {
+      const grouping::VertexRun& run = mesh.vertices.runs[r];
+      const DVec3 lo(run.corner_lo), hi(run.corner_hi);
+      if (run.kind == grouping::RunKind::kPlane) bars.addLattice(frame, run.axis, lo, hi);
+      if (run.kind == grouping::RunKind::kLine) bars.addSegment(lo, hi);
+    }
   }
   return bars.take();
 }

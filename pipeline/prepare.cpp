@@ -5,8 +5,10 @@
 #include <utility>
 
 #include "core/error.h"
+#include "grouping/cluster_patches.h"
 #include "grouping/group_quality.h"
 #include "grouping/linear_groups.h"
+#include "grouping/patch_groups.h"
 #include "grouping/planar_groups.h"
 
 namespace sheaf::pipeline {
@@ -110,12 +112,24 @@ grouping::VertexGroups findGroups(const mesh::Mesh& mesh, const GroupingOptions&
 constexpr std::uint32_t kMinPlaneRun = 80;
 constexpr std::uint32_t kNoPlaneRuns = 1000;
 
+grouping::VertexGroups findPatchGroups(const mesh::Mesh& mesh, const grouping::PatchSet& set,
+                                       const GroupingOptions& options, TaskPool& pool) {
+  grouping::PatchGroupOptions patch_groups;
+  patch_groups.epsilon = options.epsilon;
+  patch_groups.metric = options.metric;
+  patch_groups.limit = options.limit;
+  patch_groups.min_members = kMinPlaneRun;
+  return groupInPatches(mesh, set, patch_groups, pool);
+}
+
 // Moves the mesh's vertices to where their groups put them and sorts the patches by group.
 void groupVertices(const GroupingOptions& options, mesh::Mesh& mesh, grouping::PatchSet& set, TaskPool& pool,
                    PreparedMesh& out, std::vector<std::string>& warnings) {
-  grouping::VertexGroups groups = findGroups(mesh, options);
+  const bool in_patches = options.method == Grouping::kCluster;
+  grouping::VertexGroups groups = in_patches ? findPatchGroups(mesh, set, options, pool) : findGroups(mesh, options);
   warnings.insert(warnings.end(), groups.warnings.begin(), groups.warnings.end());
-  const grouping::PlacedVertices placed = placeGrouped(mesh, groups, set, options.form);
+  const grouping::PlacedVertices placed =
+      in_patches ? placeInFrames(mesh, groups, set, options.form) : placeGrouped(mesh, groups, set, options.form);
   groups.positions = placed.positions;
   grouping::measure(mesh.positions, mesh.triangles, groups);
   out.grouping = groups.stats;
@@ -129,7 +143,8 @@ PreparedMesh prepareMesh(mesh::Mesh& mesh, const GroupingOptions& options, bool 
                          std::vector<std::string>& warnings) {
   PreparedMesh out;
   out.extent = mesh::boundsOf(mesh).longestEdge();
-  grouping::PatchSet set = grouping::splitIntoPatches(mesh, {}, pool);
+  grouping::PatchSet set = options.method == Grouping::kCluster ? grouping::clusterPatches(mesh, {}, pool)
+                                                                : grouping::splitIntoPatches(mesh, {}, pool);
   if (options.method == Grouping::kNone)
     out.vertices = ungroupedRuns(mesh, set, pool);
   else
@@ -156,6 +171,7 @@ PreparedMesh prepareMesh(mesh::Mesh& mesh, const GroupingOptions& options, bool 
     out.triangle_count += patch.triangle_count;
   }
   out.patches = std::move(set.patches);
+  out.tree = grouping::buildPatchTree(out.patches);
   out.corners = std::move(set.corners);
   out.triangle_source = std::move(set.triangle_source);
   return out;
@@ -176,7 +192,7 @@ std::vector<bool> meshesWithShadedPositions(const scenes::Scene& scene) {
 }  // namespace
 
 std::uint64_t PreparedMesh::bytes() const {
-  std::uint64_t sum = vertices.bytes() + bytesOf(patches) + bytesOf(triangle_source) + bytesOf(normal);
+  std::uint64_t sum = vertices.bytes() + bytesOf(patches) + tree.bytes() + bytesOf(triangle_source) + bytesOf(normal);
   for (const auto& c : corners) sum += bytesOf(c);
   for (const auto& p : position) sum += bytesOf(p);
   for (const auto& t : texcoord) sum += bytesOf(t);

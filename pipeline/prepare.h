@@ -12,6 +12,7 @@
 
 #include "core/math.h"
 #include "core/task_pool.h"
+#include "grouping/patch_tree.h"
 #include "grouping/patches.h"
 #include "grouping/vertex_groups.h"
 #include "grouping/vertex_runs.h"
@@ -21,7 +22,12 @@
 
 namespace sheaf::pipeline {
 
-enum class Grouping : std::uint8_t { kNone, kLinear, kPlanar };
+enum class Grouping : std::uint8_t {
+  kNone,
+  kLinear,   ///< lines through two vertices
+  kPlanar,   ///< planes across an axis, of the whole mesh
+  kCluster,  ///< planes of patches that are made of face clusters
+};
 
 using grouping::ParameterForm;
 
@@ -42,6 +48,7 @@ struct GroupingOptions {
 /// grouping::PatchSet; padding slots hold copies.
 struct PreparedMesh {
   std::vector<grouping::Patch> patches;
+  grouping::PatchTree tree;  ///< over `patches`, for culling
   std::array<std::vector<std::uint8_t>, 3> corners;
   std::vector<std::uint32_t> triangle_source;
   grouping::VertexRuns vertices;  ///< what is transformed, object space

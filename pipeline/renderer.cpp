@@ -15,16 +15,8 @@
 namespace sheaf::pipeline {
 namespace {
 
-constexpr std::uint32_t kPatchesPerCullJob = 256;
 constexpr int kPatchesPerGeometryPiece = 8;
 constexpr int kInstancesPerPiece = 64;
-
-// Patches [first, last) of an instance.
-struct CullJob {
-  std::uint32_t instance;
-  std::uint32_t first;
-  std::uint32_t last;
-};
 
 int pieces(std::size_t count, int per_piece) {
   return static_cast<int>((count + static_cast<std::size_t>(per_piece) - 1) / static_cast<std::size_t>(per_piece));
@@ -148,7 +140,7 @@ void Renderer::State::cull(const PreparedScene& scene, const View& view, const R
     for (std::size_t i = first; i < last; ++i) {
       const scenes::Instance& instance = scene.instances[i];
       const PreparedMesh& mesh = scene.meshes[instance.mesh];
-      instances[i] = viewInstance(instance, mesh.bounds, view, settings.cull_patches);
+      instances[i] = viewInstance(instance, mesh.bounds, view, settings.culling != Culling::kNone);
       surfaces[i] = surfaceOf(mesh, instance, static_cast<std::uint32_t>(i));
     }
     clock.end();
@@ -165,8 +157,7 @@ void Renderer::State::cull(const PreparedScene& scene, const View& view, const R
       counters.patches_outside += count;
       continue;
     }
-    for (std::uint32_t p = 0; p < count; p += kPatchesPerCullJob)
-      jobs.push_back({i, p, std::min(count, p + kPatchesPerCullJob)});
+    for (std::uint32_t part = 0; part < mesh.tree.partCount(); ++part) jobs.push_back({i, part});
   }
 
   pool.parallelFor(static_cast<int>(jobs.size()), [&](int piece, int worker) {
@@ -174,18 +165,8 @@ void Renderer::State::cull(const PreparedScene& scene, const View& view, const R
     w.clock.begin(Stage::kCull);
     const CullJob& job = jobs[static_cast<std::size_t>(piece)];
     const scenes::Instance& instance = scene.instances[job.instance];
-    const PreparedMesh& mesh = scene.meshes[instance.mesh];
-    const bool back_faces_culled = !scene.double_sided[instance.material];
-    for (std::uint32_t p = job.first; p < job.last; ++p) {
-      PatchVisibility seen = PatchVisibility::kStraddling;
-      if (settings.cull_patches) seen = classifyPatch(mesh.patches[p], instances[job.instance], back_faces_culled);
-      if (seen == PatchVisibility::kOutside)
-        ++w.counters.patches_outside;
-      else if (seen == PatchVisibility::kBackFacing)
-        ++w.counters.patches_back_facing;
-      else
-        w.drawn.push_back({job.instance, p, seen});
-    }
+    cullPart(job, scene.meshes[instance.mesh].tree, settings.culling, instances[job.instance],
+             !scene.double_sided[instance.material], w.drawn, w.counters);
     w.clock.end();
   });
 

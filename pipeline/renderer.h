@@ -8,15 +8,16 @@
 #include "core/stage_timer.h"
 #include "core/task_pool.h"
 #include "pipeline/counters.h"
+#include "pipeline/patch_culling.h"
 #include "pipeline/prepare.h"
 #include "scenes/scene.h"
 
 namespace sheaf::pipeline {
 
 struct RenderSettings {
-  int width = 1280;                         ///< [1, 16384] pixels
-  int height = 720;                         ///< [1, 16384] pixels
-  bool cull_patches = true;                 ///< false: every vertex of every patch is transformed (classic baseline)
+  int width = 1280;  ///< [1, 16384] pixels
+  int height = 720;  ///< [1, 16384] pixels
+  Culling culling = Culling::kTree;
   Vec4 background{0.0F, 0.0F, 0.0F, 0.0F};  ///< linear, straight alpha
   bool want_srgb = true;                    ///< fill Frame::color
   bool want_linear = false;                 ///< fill Frame::linear

@@ -20,6 +20,14 @@ Vec4 transformVertex(const Vec3& p, const Mat4& m) {
   return clip;
 }
 
+Mat4 clipFromPlanes(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const Mat4& clip_from_object) {
+  if (patch.frame == grouping::kNoIndex) return clip_from_object;
+  const grouping::PatchFrame& frame = runs.frames[patch.frame];
+  const Mat4 object_from_patch(Vec4(frame.axes.axis_s, 0.0F), Vec4(frame.axes.axis_t, 0.0F),
+                               Vec4(frame.axes.normal, 0.0F), Vec4(frame.origin, 1.0F));
+  return clip_from_object * object_from_patch;
+}
+
 Vec4 transformGrouped(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch,
                       const grouping::VertexRun& run, const StoredParameters& parameters, const Mat4& m) {
   const bool quantised = runs.form == grouping::ParameterForm::k16Bit;
@@ -44,7 +52,7 @@ Vec4 transformGrouped(const grouping::VertexRuns& runs, const grouping::PatchRun
   position[static_cast<int>(j)] =
       quantised ? static_cast<float>(patch.corner[j] + static_cast<std::int32_t>(parameters.t)) * runs.step
                 : parameters.t;
-  return transformVertex(position, m);
+  return transformVertex(position, clipFromPlanes(runs, patch, m));
 }
 
 raster::ScreenVertex projectVertex(const Vec4& clip, const Viewport& viewport) {

@@ -49,7 +49,7 @@ struct alignas(64) ClipVertices {
   float w[kVertexSlots];
 };
 
-/// Screen coordinates of a patch; meaningless where w <= 0.
+/// Screen coordinates of a patch; meaningless where w <= 0 and beyond the guard band.
 using ProjectedVertices = std::array<raster::ScreenVertex, kVertexSlots>;
 
 struct OutcodeSummary {
@@ -69,6 +69,9 @@ struct RunStart {
     (run.kind == grouping::RunKind::kFull ? full : parameter) += run.vertex_count;
   }
 };
+
+/// Clip space from the space of a patch's planes: its frame, or else object space.
+Mat4 clipFromPlanes(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const Mat4& clip_from_object);
 
 /// All vertices of a patch straight to the screen: those in full by the matrix, others from their plane or line ([PG]
 /// eqs. 1, 2). For patches that need no clipping: clip coordinates do not leave the registers.

@@ -16,38 +16,119 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr std::size_t kMaxLanes = 16;
 const hn::CappedTag<float, kMaxLanes> df;
 const hn::RebindToSigned<decltype(df)> di;
+const hn::RebindToUnsigned<decltype(df)> du;
 using VF = hn::Vec<decltype(df)>;
 using VI = hn::Vec<decltype(di)>;
+using VU = hn::Vec<decltype(du)>;
 
-// Where a vector of transformed vertices goes. ToScreen stores whole vectors: what is beyond the end of a run is
-// overwritten by the next one.
+// A vector for each row of a column of a matrix, or for each of the clip coordinates of a vector of vertices. Columns
+// are spread out before a loop: stores to the result could otherwise be changing the matrix, for all that the compiler
+// knows.
+struct Rows {
+  VF x, y, z, w;
+};
+HWY_INLINE Rows Spread(const Vec4& column) {
+  return {hn::Set(df, column.x), hn::Set(df, column.y), hn::Set(df, column.z), hn::Set(df, column.w)};
+}
+HWY_INLINE Rows Sum(const Rows& a, const Rows& b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z), hn::Add(a.w, b.w)};
+}
+HWY_INLINE Rows Scaled(const Rows& column, VF by) {
+  return {hn::Mul(column.x, by), hn::Mul(column.y, by), hn::Mul(column.z, by), hn::Mul(column.w, by)};
+}
+
+#if HWY_MAX_BYTES >= 32
+// Interleaving four vectors takes two steps within blocks of four lanes and, if a vector has several blocks, two more
+// across them. The latter are spared by giving the lanes that order beforehand in which the first two leave what
+// belongs together: lane k of block b is vertex k * blocks + b. That takes a shuffle for each vector that is loaded, of
+// which there are one to three.
+constexpr bool kReorders = true;
+VU LaneOrder() {
+  alignas(64) std::uint32_t order[kMaxLanes];
+  const auto blocks = static_cast<std::uint32_t>(hn::Lanes(df) / 4);
+  for (std::uint32_t lane = 0; lane < 4 * blocks; ++lane) order[lane] = lane % 4 * blocks + lane / 4;
+  return hn::Load(du, order);
+}
+HWY_INLINE void StoreInterleaved(VF x, VF y, VF z, VF w, float* to) {
+  const hn::RepartitionToWide<decltype(du)> du64;
+  const auto pairs = [&](VF v) HWY_ATTR { return hn::BitCast(du64, v); };
+  const auto xy_lo = pairs(hn::InterleaveLower(df, x, y)), xy_hi = pairs(hn::InterleaveUpper(df, x, y));
+  const auto zw_lo = pairs(hn::InterleaveLower(df, z, w)), zw_hi = pairs(hn::InterleaveUpper(df, z, w));
+  const std::size_t lanes = hn::Lanes(df);
+  hn::StoreU(hn::BitCast(df, hn::InterleaveLower(du64, xy_lo, zw_lo)), df, to);
+  hn::StoreU(hn::BitCast(df, hn::InterleaveUpper(du64, xy_lo, zw_lo)), df, to + lanes);
+  hn::StoreU(hn::BitCast(df, hn::InterleaveLower(du64, xy_hi, zw_hi)), df, to + 2 * lanes);
+  hn::StoreU(hn::BitCast(df, hn::InterleaveUpper(du64, xy_hi, zw_hi)), df, to + 3 * lanes);
+}
+#else
+constexpr bool kReorders = false;
+VU LaneOrder() {
+  return hn::Zero(du);
+}
+HWY_INLINE void StoreInterleaved(VF x, VF y, VF z, VF w, float* to) {
+  hn::StoreInterleaved4(x, y, z, w, df, to);
+}
+#endif
+
+// Where a vector of transformed vertices goes, and in which order it wants its lanes. ToScreen stores whole vectors:
+// what is beyond the end of a run is overwritten by the next one.
 struct ToClipSpace {
   ClipVertices& out;
-  void store(VF x, VF y, VF z, VF w, std::uint32_t at, std::uint32_t end) const {
+  template <class V>
+  V arrange(V v) const {
+    return v;
+  }
+  void store(const Rows& clip, std::uint32_t at, std::uint32_t end) const {
     const auto valid = hn::FirstN(df, std::min<std::size_t>(hn::Lanes(df), end - at));
-    hn::BlendedStore(x, valid, df, out.x + at);
-    hn::BlendedStore(y, valid, df, out.y + at);
-    hn::BlendedStore(z, valid, df, out.z + at);
-    hn::BlendedStore(w, valid, df, out.w + at);
+    hn::BlendedStore(clip.x, valid, df, out.x + at);
+    hn::BlendedStore(clip.y, valid, df, out.y + at);
+    hn::BlendedStore(clip.z, valid, df, out.z + at);
+    hn::BlendedStore(clip.w, valid, df, out.w + at);
   }
 };
+// Rounds x or y in subpixels to whole numbers, ties to even. Within the guard band they differ from `half`, the middle
+// of the target, by less than 2^22. So v + (1.5 * 2^23 - half) is within [2^23, 2^24), where floats are the whole
+// numbers and their bits count up one by one; `half` is even, so that ties stay what they are. A conversion takes four
+// times as many operations, because it has to give the same on all targets beyond the range of integers too.
+struct SubpixelAxis {
+  static_assert(raster::kGuardBandPx * raster::kSubpixels <= 1 << 22);
+  static_assert(raster::kSubpixels % 4 == 0, "half a width in subpixels is even");
+  VF half;
+  VF offset;
+  VI zero;  // bits of 0 + offset
+
+  explicit SubpixelAxis(float half_px) {
+    // Subpixels in place of pixels: scaling by a power of two is exact.
+    const auto half_fx = static_cast<std::int32_t>(half_px * raster::kSubpixels);
+    half = hn::Set(df, static_cast<float>(half_fx));
+    offset = hn::Set(df, static_cast<float>((3 << 22) - half_fx));
+    zero = hn::Set(di, 0x4B000000 + (1 << 22) - half_fx);
+  }
+  HWY_INLINE VF round(VF v) const { return hn::BitCast(df, hn::Sub(hn::BitCast(di, hn::Add(v, offset)), zero)); }
+};
 struct ToScreen {
-  VF half_width;
-  VF half_height;
+  SubpixelAxis x_axis;
+  SubpixelAxis y_axis;
+  VU order = LaneOrder();
   ProjectedVertices& out;
 
   ToScreen(const Viewport& viewport, ProjectedVertices& to)
-      : half_width(hn::Set(df, viewport.half_width_px)), half_height(hn::Set(df, viewport.half_height_px)), out(to) {}
+      : x_axis(viewport.half_width_px), y_axis(viewport.half_height_px), out(to) {}
 
-  void store(VF x, VF y, VF z, VF w, std::uint32_t at, std::uint32_t /*end*/) const {
-    const VF inv_w = hn::Div(hn::Set(df, 1.0F), w);
-    const VF subpixels = hn::Set(df, static_cast<float>(raster::kSubpixels));
-    const VF x_px = hn::Add(hn::Mul(hn::Mul(x, inv_w), half_width), half_width);
-    const VF y_px = hn::Sub(half_height, hn::Mul(hn::Mul(y, inv_w), half_height));
-    const VF x_fx = hn::BitCast(df, hn::NearestInt(hn::Mul(x_px, subpixels)));
-    const VF y_fx = hn::BitCast(df, hn::NearestInt(hn::Mul(y_px, subpixels)));
+  template <class V>
+  V arrange(V v) const {
+    if constexpr (kReorders)
+      return hn::TableLookupLanes(v, hn::IndicesFromVec(hn::DFromV<V>(), order));
+    else
+      return v;
+  }
+  void store(const Rows& clip, std::uint32_t at, std::uint32_t /*end*/) const {
+    const VF inv_w = hn::Div(hn::Set(df, 1.0F), clip.w);
+    const VF x_fx = hn::Add(hn::Mul(hn::Mul(clip.x, inv_w), x_axis.half), x_axis.half);
+    const VF y_fx = hn::Sub(y_axis.half, hn::Mul(hn::Mul(clip.y, inv_w), y_axis.half));
     // Words as they are in memory; only their bits matter.
-    hn::StoreInterleaved4(x_fx, y_fx, hn::Mul(z, inv_w), inv_w, df, reinterpret_cast<float*>(&out[at]));
+    StoreInterleaved(x_axis.round(x_fx), y_axis.round(y_fx), hn::Mul(clip.z, inv_w), inv_w,
+                     reinterpret_cast<float*>(&out[at]));
   }
 };
 
@@ -56,30 +137,32 @@ template <class Target>
 HWY_INLINE void TransformFull(const float* x, std::size_t stride, std::uint32_t to, std::uint32_t end, const Mat4& m,
                               const Target& target) {
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(df));
+  const Rows m0 = Spread(m[0]), m1 = Spread(m[1]), m2 = Spread(m[2]), m3 = Spread(m[3]);
   for (std::uint32_t v = 0; to + v < end; v += lanes) {
-    const VF vx = hn::LoadU(df, x + v);
-    const VF vy = hn::LoadU(df, x + stride + v);
-    const VF vz = hn::LoadU(df, x + 2 * stride + v);
-    const auto row = [&](int i) HWY_ATTR {
-      const VF sum = hn::Add(hn::Set(df, m[3][i]), hn::Mul(hn::Set(df, m[0][i]), vx));
-      return hn::Add(hn::Add(sum, hn::Mul(hn::Set(df, m[1][i]), vy)), hn::Mul(hn::Set(df, m[2][i]), vz));
-    };
-    target.store(row(0), row(1), row(2), row(3), to + v, end);
+    const VF vx = target.arrange(hn::LoadU(df, x + v));
+    const VF vy = target.arrange(hn::LoadU(df, x + stride + v));
+    const VF vz = target.arrange(hn::LoadU(df, x + 2 * stride + v));
+    target.store(Sum(Sum(Sum(m3, Scaled(m0, vx)), Scaled(m1, vy)), Scaled(m2, vz)), to + v, end);
   }
 }
 
 // Parameters as floats: stored so, or whole numbers of grid steps.
 struct FloatParameters {
   const Vec2* st;
-  void load(std::uint32_t v, VF& s, VF& t) const { hn::LoadInterleaved2(df, &st[v].x, s, t); }
+  template <class Target>
+  void load(std::uint32_t v, const Target& target, VF& s, VF& t) const {
+    hn::LoadInterleaved2(df, &st[v].x, s, t);
+    s = target.arrange(s);
+    t = target.arrange(t);
+  }
 };
 struct GridParameters {
   const std::uint32_t* st;
   std::int32_t corner_s;
   std::int32_t corner_t;
-  void load(std::uint32_t v, VF& s, VF& t) const {
-    const hn::RebindToUnsigned<decltype(df)> du;
-    const auto both = hn::LoadU(du, st + v);
+  template <class Target>
+  void load(std::uint32_t v, const Target& target, VF& s, VF& t) const {
+    const VU both = target.arrange(hn::LoadU(du, st + v));
     const VI q_s = hn::BitCast(di, hn::And(both, hn::Set(du, 0xFFFFU)));
     const VI q_t = hn::BitCast(di, hn::ShiftRight<16>(both));
     s = hn::ConvertTo(df, hn::Add(q_s, hn::Set(di, corner_s)));
@@ -90,38 +173,34 @@ struct GridParameters {
 // [PG] eq. 2: base + s S + t T. The constant is added where coordinate kAxis has its place, so that sums round as those
 // of TransformFull(): it is part of the base for x and costs one more addition for y and z.
 template <std::size_t kAxis, class Parameters, class Target>
-HWY_INLINE void TransformPlane(const Parameters& parameters, const Vec4& origin, const Vec4& constant,
-                               const Vec4& along_s, const Vec4& along_t, std::uint32_t to, std::uint32_t end,
-                               const Target& target) {
+HWY_INLINE void TransformPlane(const Parameters& parameters, float plane, float step, const Mat4& m, std::uint32_t to,
+                               std::uint32_t end, const Target& target) {
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(df));
-  const Vec4 base = kAxis == 0 ? origin + constant : origin;
+  constexpr int kS = kAxis == 0 ? 1 : 0, kT = kAxis == 2 ? 1 : 2;
+  const Rows constant = Scaled(Spread(m[static_cast<int>(kAxis)]), hn::Set(df, plane));
+  const Rows base = kAxis == 0 ? Sum(Spread(m[3]), constant) : Spread(m[3]);
+  // Scaling by a power of two is exact: these give the products of the whole coordinates.
+  const Rows s_column = Scaled(Spread(m[kS]), hn::Set(df, step)), t_column = Scaled(Spread(m[kT]), hn::Set(df, step));
   for (std::uint32_t v = 0; to + v < end; v += lanes) {
     VF s, t;
-    parameters.load(v, s, t);
-    const auto row = [&](int i) HWY_ATTR {
-      VF sum = hn::Add(hn::Set(df, base[i]), hn::Mul(hn::Set(df, along_s[i]), s));
-      if constexpr (kAxis == 1) sum = hn::Add(sum, hn::Set(df, constant[i]));
-      sum = hn::Add(sum, hn::Mul(hn::Set(df, along_t[i]), t));
-      if constexpr (kAxis == 2) sum = hn::Add(sum, hn::Set(df, constant[i]));
-      return sum;
-    };
-    target.store(row(0), row(1), row(2), row(3), to + v, end);
+    parameters.load(v, target, s, t);
+    Rows sum = Sum(base, Scaled(s_column, s));
+    if constexpr (kAxis == 1) sum = Sum(sum, constant);
+    sum = Sum(sum, Scaled(t_column, t));
+    if constexpr (kAxis == 2) sum = Sum(sum, constant);
+    target.store(sum, to + v, end);
   }
 }
 
 template <class Parameters, class Target>
 HWY_INLINE void TransformPlaneOn(std::size_t axis, const Parameters& parameters, float plane, float step, const Mat4& m,
                                  std::uint32_t to, std::uint32_t end, const Target& target) {
-  const auto [i, j] = grouping::axesBeside(axis);
-  const Vec4 constant = m[static_cast<int>(axis)] * plane;
-  // Scaling by a power of two is exact: these give the products of the whole coordinates.
-  const Vec4 s = m[static_cast<int>(i)] * step, t = m[static_cast<int>(j)] * step;
   if (axis == 0)
-    TransformPlane<0>(parameters, m[3], constant, s, t, to, end, target);
+    TransformPlane<0>(parameters, plane, step, m, to, end, target);
   else if (axis == 1)
-    TransformPlane<1>(parameters, m[3], constant, s, t, to, end, target);
+    TransformPlane<1>(parameters, plane, step, m, to, end, target);
   else
-    TransformPlane<2>(parameters, m[3], constant, s, t, to, end, target);
+    TransformPlane<2>(parameters, plane, step, m, to, end, target);
 }
 
 // [PG] eq. 1: base + s L, with s = s0 + q ds for the stored q.
@@ -129,12 +208,12 @@ template <class Parameters, class Target>
 HWY_INLINE void TransformLine(const Parameters& parameters, float s0, float ds, const Vec4& base, const Vec4& along,
                               std::uint32_t to, std::uint32_t end, const Target& target) {
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(df));
+  const Rows origin = Spread(base), direction = Spread(along);
   for (std::uint32_t v = 0; to + v < end; v += lanes) {
-    VF s, unused;
-    parameters.load(v, s, unused);
-    s = hn::Add(hn::Set(df, s0), hn::Mul(s, hn::Set(df, ds)));
-    const auto row = [&](int i) HWY_ATTR { return hn::Add(hn::Set(df, base[i]), hn::Mul(hn::Set(df, along[i]), s)); };
-    target.store(row(0), row(1), row(2), row(3), to + v, end);
+    VF q, unused;
+    parameters.load(v, target, q, unused);
+    const VF s = hn::Add(hn::Set(df, s0), hn::Mul(q, hn::Set(df, ds)));
+    target.store(Sum(origin, Scaled(direction, s)), to + v, end);
   }
 }
 
@@ -174,7 +253,7 @@ HWY_INLINE void TransformAnyRun(const grouping::VertexRuns& runs, const grouping
   if (run.kind == grouping::RunKind::kFull)
     TransformFull(runs.full.data() + start.full + begin, runs.full_stride, to, to_end, m, target);
   else if (run.kind == grouping::RunKind::kPlane)
-    TransformPlaneRun(runs, patch, run, start.parameter + begin, to, to_end, m, target);
+    TransformPlaneRun(runs, patch, run, start.parameter + begin, to, to_end, clipFromPlanes(runs, patch, m), target);
   else
     TransformLineRun(runs, run, start.parameter + begin, to, to_end, m, target);
 }
@@ -199,8 +278,9 @@ void ProjectVertices(const ClipVertices& vertices, std::uint32_t begin, std::uin
                      ProjectedVertices& out) {
   const ToScreen target(viewport, out);
   for (std::uint32_t v = begin; v < end; v += static_cast<std::uint32_t>(hn::Lanes(df)))
-    target.store(hn::LoadU(df, vertices.x + v), hn::LoadU(df, vertices.y + v), hn::LoadU(df, vertices.z + v),
-                 hn::LoadU(df, vertices.w + v), v, end);
+    target.store({target.arrange(hn::LoadU(df, vertices.x + v)), target.arrange(hn::LoadU(df, vertices.y + v)),
+                  target.arrange(hn::LoadU(df, vertices.z + v)), target.arrange(hn::LoadU(df, vertices.w + v))},
+                 v, end);
 }
 
 VI BitWhere(hn::Mask<decltype(df)> mask, std::int32_t bit) {

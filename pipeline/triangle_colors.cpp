@@ -35,16 +35,16 @@ Parts patchesOf(const PreparedMesh& mesh, std::size_t face_count) {
 /// Planes and lines of a mesh by number, whatever patch their runs are in.
 class GroupNumbers {
  public:
-  /// kNoIndex for vertices in full.
-  std::uint32_t of(const grouping::VertexRun& run) {
+  /// kNoIndex for vertices in full. frame  of the patch, in which equal planes are other ones
+  std::uint32_t of(const grouping::VertexRun& run, std::uint32_t frame) {
     if (run.kind == grouping::RunKind::kFull) return kNoIndex;
-    const auto [entry, is_new] = numbers_.try_emplace({run.axis, run.plane, run.line}, count());
+    const auto [entry, is_new] = numbers_.try_emplace({run.axis, run.plane, run.line, frame}, count());
     return entry->second;
   }
   std::uint32_t count() const { return static_cast<std::uint32_t>(numbers_.size()); }
 
  private:
-  std::map<std::tuple<std::uint8_t, float, std::uint32_t>, std::uint32_t> numbers_;
+  std::map<std::tuple<std::uint8_t, float, std::uint32_t, std::uint32_t>, std::uint32_t> numbers_;
 };
 
 Parts groupsOf(const PreparedMesh& mesh, std::size_t face_count) {
@@ -56,7 +56,7 @@ Parts groupsOf(const PreparedMesh& mesh, std::size_t face_count) {
     group_of_vertex.clear();
     for (std::uint32_t r = 0; r < runs.run_count; ++r) {
       const grouping::VertexRun& run = mesh.vertices.runs[runs.first_run + r];
-      group_of_vertex.insert(group_of_vertex.end(), run.vertex_count, numbers.of(run));
+      group_of_vertex.insert(group_of_vertex.end(), run.vertex_count, numbers.of(run, runs.frame));
     }
     const grouping::Patch& patch = mesh.patches[p];
     for (std::uint32_t slot = patch.first_triangle; slot < patch.first_triangle + patch.triangle_count; ++slot) {

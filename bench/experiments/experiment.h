@@ -39,6 +39,8 @@ std::string writePlanes(Context& context);
 std::string writeSearch(Context& context);
 // clustering.cpp
 std::string writeClustering(Context& context);
+// patch_groups.cpp
+std::string writePatchGroups(Context& context);
 // growth.cpp
 std::string writeGrowth(Context& context);
 std::string writeSimplification(Context& context);

@@ -51,6 +51,7 @@ const std::vector<Section>& sections() {
       {"beyond", "Normals, texture coordinates, moving vertices", writeBeyond},
       {"simplification", "Simplification", writeSimplification},
       {"clustering", "Hierarchical face clustering", writeClustering},
+      {"patch-groups", "Planes of patches", writePatchGroups},
   };
   return all;
 }

@@ -46,15 +46,17 @@ BENCHMARK(transformAndProject)->Name("pipeline/transform")->ArgName("patches")->
 struct Load {
   const char* name;
   const char* spec;
-  bool cull;
+  Culling culling = Culling::kTree;
 };
 
-constexpr std::array<Load, 6> kLoads = {{{"sphere-1M", "sphere?n=289", true},
-                                         {"sphere-1M-classic", "sphere?n=289", false},
-                                         {"sphere-100k", "sphere?n=91", true},
-                                         {"terrain-2M", "terrain?n=1001", true},
-                                         {"city", "city?blocks=20", true},
-                                         {"gallery", "gallery", true}}};
+constexpr std::array<Load, 8> kLoads = {{{"sphere-1M", "sphere?n=289"},
+                                         {"sphere-1M-flat", "sphere?n=289", Culling::kPatches},
+                                         {"sphere-1M-classic", "sphere?n=289", Culling::kNone},
+                                         {"sphere-100k", "sphere?n=91"},
+                                         {"terrain-2M", "terrain?n=1001"},
+                                         {"terrain-2M-flat", "terrain?n=1001", Culling::kPatches},
+                                         {"city", "city?blocks=20"},
+                                         {"gallery", "gallery"}}};
 
 /// What a frame must move at least, if nothing that is binned stays in a cache: positions and corners of the triangles
 /// that are drawn, the binned ones out and in again, normals, and the picture.
@@ -81,7 +83,7 @@ void drawFrame(benchmark::State& state, const Load& load, int threads) {
   const PreparedScene prepared = prepareScene(std::move(scene), pool);
   constexpr std::array kStages = {Stage::kCull,     Stage::kTransform, Stage::kClip,
                                   Stage::kSetupBin, Stage::kRaster,    Stage::kShade};
-  const Frame frame = repeatFrame(state, prepared, camera, load.cull, kStages, pool);
+  const Frame frame = repeatFrame(state, prepared, camera, load.culling, kStages, pool);
   state.counters["binned"] = static_cast<double>(frame.counters.triangles_binned);
   state.counters["pixels"] = static_cast<double>(frame.counters.pixels_shaded);
   state.counters["memory_ms"] = 1e3 * memorySeconds(frameBytes(frame.counters));

@@ -17,12 +17,12 @@ inline constexpr int kBenchHeight = 1080;
 /// Draws the frame once to warm up and then for every iteration of `state`. The counters `<stage>_ms` are cpu times per
 /// frame, summed over threads. Returns the last frame.
 inline Frame repeatFrame(benchmark::State& state, const PreparedScene& scene, const scenes::Camera& camera,
-                         bool cull_patches, std::span<const Stage> stages, TaskPool& pool) {
+                         Culling culling, std::span<const Stage> stages, TaskPool& pool) {
   Renderer renderer(pool);
   RenderSettings settings;
   settings.width = kBenchWidth;
   settings.height = kBenchHeight;
-  settings.cull_patches = cull_patches;
+  settings.culling = culling;
   Frame frame;
   renderer.render(scene, camera, settings, frame);
   StageTimes cpu;

@@ -63,16 +63,16 @@ constexpr std::array<Load, 4> kLoads = {{{"sphere-1M", "sphere?n=289"},
 
 struct Way {
   const char* name;
-  bool cull;
+  Culling culling;
   Grouping method;
   bool use_groups;
   ParameterForm form;
 };
-constexpr std::array<Way, 5> kWays = {{{"classic", false, Grouping::kNone, false, ParameterForm::k16Bit},
-                                       {"modern", true, Grouping::kNone, false, ParameterForm::k16Bit},
-                                       {"snapped", true, Grouping::kPlanar, false, ParameterForm::k16Bit},
-                                       {"planar16", true, Grouping::kPlanar, true, ParameterForm::k16Bit},
-                                       {"planarF", true, Grouping::kPlanar, true, ParameterForm::kFloat}}};
+constexpr std::array<Way, 5> kWays = {{{"classic", Culling::kNone, Grouping::kNone, false, ParameterForm::k16Bit},
+                                       {"modern", Culling::kPatches, Grouping::kNone, false, ParameterForm::k16Bit},
+                                       {"snapped", Culling::kTree, Grouping::kPlanar, false, ParameterForm::k16Bit},
+                                       {"planar16", Culling::kTree, Grouping::kPlanar, true, ParameterForm::k16Bit},
+                                       {"planarF", Culling::kTree, Grouping::kPlanar, true, ParameterForm::kFloat}}};
 
 // CPU time of the stages, one thread. `closeness` 0: the whole scene in view; towards 1: the eye near the middle.
 void drawFrame(benchmark::State& state, const Load& load, const Way& way, double closeness) {
@@ -90,7 +90,7 @@ void drawFrame(benchmark::State& state, const Load& load, const Way& way, double
   options.form = way.form;
   const PreparedScene prepared = prepareScene(std::move(scene), pool, options);
   constexpr std::array kStages = {Stage::kCull, Stage::kTransform, Stage::kClip, Stage::kSetupBin};
-  const Frame frame = repeatFrame(state, prepared, camera, way.cull, kStages, pool);
+  const Frame frame = repeatFrame(state, prepared, camera, way.culling, kStages, pool);
   const PreparedMesh& mesh = prepared.meshes[0];
   state.counters["bytes/vertex"] = static_cast<double>(mesh.vertexBytes()) / static_cast<double>(mesh.vertex_count);
   state.counters["runs/patch"] =

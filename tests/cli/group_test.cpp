@@ -157,6 +157,23 @@ TEST_CASE("cli/group: points without faces are grouped by distance, and a warnin
   CHECK(bad.err.find("p.off: vertex 1") != std::string::npos);
 }
 
+TEST_CASE("cli/group: by cluster, every patch has a frame, and the saved groups are whole") {
+  const TempFolder folder;
+  const json j =
+      grouped(folder, {"--method", "cluster", "-o", "g.sheaf", "--snapped", "s.ply"}, "builtin:terrain?n=65");
+  CHECK(j["method"] == "cluster");
+  CHECK(j["key"].is_null());
+  CHECK(j["planes"] > 10);
+  CHECK(j["eliminated_fraction"].get<double>() > 0.3);
+  CHECK(j["displacement_fraction"]["max"].get<double>() <= 0.005001);
+  const grouping::VertexGroups groups = grouping::loadGroups(folder.path() / "g.sheaf");
+  CHECK(groups.groups.size() == j["groups"]);
+  CHECK(groups.planes.size() == j["planes"]);
+  CHECK(grouped(folder, {"--method", "cluster", "--no-flips"}, "builtin:terrain?n=65")["flipped_faces"] == 0);
+  const RunResult text = runSheaf(folder, {"group", kSphere, "--method", "cluster", "--metric", "quadric"});
+  CHECK(text.out.find("cluster, a frame for each patch; quadric metric, safe limit") != std::string::npos);
+}
+
 TEST_CASE("cli/group: what makes no sense is refused with the reason: one line, exit code 2, no file") {
   const TempFolder folder;
   folder.write("t.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
@@ -164,6 +181,8 @@ TEST_CASE("cli/group: what makes no sense is refused with the reason: one line, 
       {{"--method", "linear", "--planes", "axis"}, "--planes is for planar"},
       {{"--method", "linear", "--key", "sum"}, "--key is for planar"},
       {{"--segment-only"}, "--segment-only is for linear"},
+      {{"--method", "cluster", "--planes", "axis"}, "--planes is for planar"},
+      {{"--method", "cluster", "--key", "sum"}, "--key is for planar"},
       {{"--limit", "safe"}, "--limit is for the quadric metric"},
       {{"--metric", "distance", "--limit", "paper"}, "--limit is for the quadric metric"},
       {{"--metric", "quadric", "--no-flips"}, "no face flip"},

@@ -102,7 +102,7 @@ TEST_CASE("pipeline/baselines: all three draw every frame, and only what they sh
   RenderSettings settings;
   settings.width = 120;
   settings.height = 80;
-  settings.cull_patches = false;
+  settings.culling = Culling::kNone;
   GroupingOptions grouping;
   grouping.method = Grouping::kPlanar;
   grouping.use_groups = false;

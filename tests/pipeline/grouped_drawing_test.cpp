@@ -36,7 +36,7 @@ PreparedScene prepare(scenes::Scene scene, const scenes::Camera& camera, const G
 
 Frame draw(const PreparedScene& scene, const scenes::Camera& camera, TaskPool& pool, bool cull = true) {
   RenderSettings settings = allChannels(kWidth, kHeight);
-  settings.cull_patches = cull;
+  settings.culling = cull ? Culling::kTree : Culling::kNone;
   Frame frame;
   Renderer(pool).render(scene, camera, settings, frame);
   return frame;
@@ -97,7 +97,7 @@ TEST_CASE("pipeline/grouped: every SIMD target and thread count draws the same b
     CAPTURE(spec);
     const scenes::Scene scene = scenes::buildBuiltin(spec);
     const scenes::Camera camera = insideCamera(scene);
-    for (const Grouping method : {Grouping::kPlanar, Grouping::kLinear}) {
+    for (const Grouping method : {Grouping::kPlanar, Grouping::kLinear, Grouping::kCluster}) {
       GroupingOptions options = planar(0.01);
       options.method = method;
       TaskPool one(1);
@@ -150,6 +150,58 @@ TEST_CASE("pipeline/grouped: by lines, what differs from the ungrouped snapped m
       const raster::ImageDifference difference = raster::compareImages(grouped.color, expected.color);
       CHECK(difference.differing_pixels * 100 <= kWidth * kHeight);
     }
+  }
+}
+
+// As for lines; in the space of a patch, sums have other terms.
+TEST_CASE("pipeline/grouped: by planes of patches, what differs from the ungrouped snapped mesh is round-off") {
+  TaskPool pool(2);
+  std::uint64_t grouped_vertices = 0, outside = 0, inside = 0;
+  for (const char* spec : kSmallScenes) {
+    CAPTURE(spec);
+    const scenes::Scene scene = scenes::buildBuiltin(spec);
+    const std::vector<scenes::Camera> cameras = camerasFor(scene);
+    for (const auto& [form, epsilon] : {std::pair{ParameterForm::k16Bit, 0.005}, {ParameterForm::kFloat, 0.02}}) {
+      GroupingOptions options = planar(epsilon, form);
+      options.method = Grouping::kCluster;
+      const PreparedScene by_groups = prepare(scene, cameras[0], options, pool);
+      const PreparedScene in_full = prepare(scene, cameras[0], ungrouped(options), pool);
+      for (const scenes::Camera& camera : cameras) {
+        const Frame grouped = draw(by_groups, camera, pool);
+        CHECK(samePicture(grouped, draw(by_groups, camera, pool, false)));
+        const Frame expected = draw(in_full, camera, pool);
+        CHECK(expected.counters.vertices_grouped == 0);
+        CHECK(raster::compareImages(grouped.color, expected.color).differing_pixels * 100 <= kWidth * kHeight);
+        grouped_vertices += grouped.counters.vertices_grouped;
+        outside += grouped.counters.groups_outside;
+        inside += grouped.counters.groups_inside;
+      }
+    }
+  }
+  CHECK(grouped_vertices > 10000);
+  CHECK(outside > 10);
+  CHECK(inside > 10);
+}
+
+// The same vertices in another frame: what falls outside, is clipped or culled must not depend on the space of the
+// test.
+TEST_CASE("pipeline/grouped: planes of patches, far from the mesh's origin, mirrored and unevenly scaled") {
+  TaskPool pool(1);
+  scenes::Scene scene = scenes::buildBuiltin("teapot?n=6");
+  DMat4 mirror(1.0);
+  mirror[0][0] = -2.0;
+  mirror[1][1] = 0.3;
+  mirror[3] = DVec4(2000.5, 1.0, -0.5, 1.0);
+  for (mesh::Mesh& mesh : scene.meshes)
+    for (Vec3& p : mesh.positions) p.x += 1000.0F;
+  scene.instances[0].world_from_object = mirror * scene.instances[0].world_from_object;
+  GroupingOptions options = planar(0.02);
+  options.method = Grouping::kCluster;
+  for (const scenes::Camera& camera : camerasFor(scene)) {
+    const Frame grouped = draw(prepare(scene, camera, options, pool), camera, pool);
+    CHECK(grouped.counters.vertices_grouped > 0);
+    const Frame expected = draw(prepare(scene, camera, ungrouped(options), pool), camera, pool);
+    CHECK(raster::compareImages(grouped.color, expected.color).differing_pixels * 50 <= kWidth * kHeight);
   }
 }
 

@@ -90,12 +90,17 @@ TEST_CASE("pipeline/renderer: culling patches changes the work and not the pictu
     const ReadyScene ready = makeReady(std::move(scene), outside, pool);
     for (const scenes::Camera& camera : {outside, inside}) {
       RenderSettings settings = allChannels(kWidth, kHeight);
-      const Frame culled = draw(ready.prepared, camera, pool, settings);
-      settings.cull_patches = false;
+      settings.culling = Culling::kNone;
       const Frame classic = draw(ready.prepared, camera, pool, settings);
-      CHECK(samePicture(culled, classic));
-      CHECK(culled.counters.vertices_transformed <= classic.counters.vertices_transformed);
       CHECK(classic.counters.patches_outside + classic.counters.patches_back_facing == 0);
+      CHECK(classic.counters.boxes_tested == 0);
+      for (const Culling culling : {Culling::kPatches, Culling::kTree}) {
+        settings.culling = culling;
+        const Frame culled = draw(ready.prepared, camera, pool, settings);
+        CHECK(samePicture(culled, classic));
+        CHECK(culled.counters.vertices_transformed <= classic.counters.vertices_transformed);
+        CHECK(culled.counters.boxes_tested > 0);
+      }
     }
   }
 }
@@ -107,9 +112,9 @@ TEST_CASE("pipeline/renderer: every triangle and every pixel is accounted for") 
     scenes::Scene scene = scenes::buildBuiltin(spec);
     const scenes::Camera inside = insideCamera(scene);
     const ReadyScene ready = makeReady(std::move(scene), inside, pool);
-    for (const bool cull : {true, false}) {
+    for (const Culling culling : {Culling::kTree, Culling::kPatches, Culling::kNone}) {
       RenderSettings settings = allChannels(kWidth, kHeight);
-      settings.cull_patches = cull;
+      settings.culling = culling;
       const Frame frame = draw(ready.prepared, inside, pool, settings);
       const Counters& c = frame.counters;
       CHECK(c.pixels_shaded == seenPixels(frame));
@@ -191,9 +196,9 @@ TEST_CASE("pipeline/renderer: a floor that passes under and behind the eye fills
   const PreparedScene prepared = prepareScene(std::move(scene), pool);
   scenes::Camera camera = cameraAt({0, 0, 0}, 0.01, 5000.0);
   camera.target = {0, 0, -1};
-  for (const bool cull : {true, false}) {
+  for (const Culling culling : {Culling::kTree, Culling::kPatches, Culling::kNone}) {
     RenderSettings settings = allChannels(kWidth, kHeight);
-    settings.cull_patches = cull;
+    settings.culling = culling;
     const Frame frame = draw(prepared, camera, pool, settings);
     CHECK(frame.counters.triangles_clipped == 2);
     for (int y = 0; y < kHeight; ++y) {
@@ -245,9 +250,9 @@ TEST_CASE("pipeline/renderer: a scene without triangles is background") {
   scene.meshes.emplace_back();
   scene.instances.emplace_back();
   const PreparedScene prepared = prepareScene(std::move(scene), pool);
-  for (const bool cull : {true, false}) {
+  for (const Culling culling : {Culling::kTree, Culling::kPatches, Culling::kNone}) {
     RenderSettings settings = allChannels(kWidth, kHeight);
-    settings.cull_patches = cull;
+    settings.culling = culling;
     const Frame frame = draw(prepared, cameraAt({0, 0, 1}), pool, settings);
     CHECK(frame.counters.pixels_background == kWidth * kHeight);
     CHECK(seenPixels(frame) == 0);

@@ -1,0 +1,211 @@
+#include "grouping/patch_groups.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "core/stage_timer.h"
+#include "grouping/cluster_shapes.h"
+#include "grouping/group_assembly.h"
+#include "grouping/group_quality.h"
+#include "grouping/quadric.h"
+
+namespace sheaf::grouping {
+namespace {
+
+constexpr std::uint32_t kManyPatches = kNoIndex - 1;
+
+std::span<const std::uint32_t> verticesOf(const Patch& patch, const PatchSet& set) {
+  return std::span(set.vertex_source).subspan(patch.first_vertex, patch.vertex_count);
+}
+
+std::span<const std::uint32_t> trianglesOf(const Patch& patch, const PatchSet& set) {
+  return std::span(set.triangle_source).subspan(patch.first_triangle, patch.triangle_count);
+}
+
+// The patch that a place or a vertex belongs to; kManyPatches once there is a second one.
+void claim(std::uint32_t& owner, std::uint32_t patch) {
+  if (owner == kNoIndex)
+    owner = patch;
+  else if (owner != patch)
+    owner = kManyPatches;
+}
+
+struct PositionHash {
+  std::size_t operator()(const Vec3& p) const {
+    std::size_t hash = 0;
+    for (int k = 0; k < 3; ++k) hash = (hash ^ std::hash<float>{}(p[k])) * 0x9E3779B97F4A7C15U;
+    return hash ^ hash >> 32;
+  }
+};
+
+// #V, whether a vertex may move: it is inside one patch, and no vertex of another patch lies where it does, for there
+// are seams of attributes. With `alone` no other vertex at all: by their quadrics they would not move alike.
+std::vector<bool> innerVertices(const mesh::Mesh& mesh, const PatchSet& set, bool alone) {
+  std::vector<std::uint32_t> patch_of(mesh.vertexCount(), kNoIndex);
+  for (std::uint32_t p = 0; p < set.patches.size(); ++p)
+    for (const std::uint32_t v : verticesOf(set.patches[p], set)) claim(patch_of[v], p);
+  const auto ownerOf = [&](std::uint32_t v) { return alone ? v : patch_of[v]; };
+  std::unordered_map<Vec3, std::uint32_t, PositionHash> owner_at;
+  owner_at.reserve(mesh.vertexCount());
+  for (std::uint32_t v = 0; v < patch_of.size(); ++v)
+    if (patch_of[v] != kNoIndex) claim(owner_at.try_emplace(mesh.positions[v], kNoIndex).first->second, ownerOf(v));
+  std::vector<bool> inner(mesh.vertexCount(), false);
+  for (std::uint32_t v = 0; v < patch_of.size(); ++v)
+    inner[v] = patch_of[v] < kManyPatches && owner_at.at(mesh.positions[v]) == ownerOf(v);
+  return inner;
+}
+
+// Finds the planes of one patch.
+class PatchSearch {
+ public:
+  // eps, ellipsoids  as for groupPlanar(); ellipsoids are empty for the distance metric
+  PatchSearch(const mesh::Mesh& mesh, const std::vector<bool>& inner, double eps, std::span<const Sym3> ellipsoids,
+              std::uint32_t min_members)
+      : mesh_(mesh), inner_(inner), eps_(eps), ellipsoids_(ellipsoids), min_members_(min_members) {}
+
+  // Writes the seeds' numbers within the patch to `owner` of their members.
+  std::vector<Findings::Seed> search(std::span<const std::uint32_t> vertices, const ClusterShape& shape,
+                                     std::uint32_t patch, std::vector<std::uint32_t>& owner) {
+    read(vertices, shape);
+    std::vector<Findings::Seed> seeds;
+    while (true) {
+      const Best best = findBest();
+      if (best.members < min_members_) return seeds;
+      take(best, static_cast<std::uint32_t>(seeds.size()), owner);
+      seeds.push_back({candidates_[best.candidate].vertex, kNoIndex, patch});
+      candidates_[best.candidate].is_free = false;
+    }
+  }
+
+ private:
+  struct Candidate {
+    std::uint32_t vertex;
+    double height;  // above the fitted plane
+    double reach;   // how far the vertex may move along the normal; < 0: it may not
+    bool is_free;   // neither a member nor on a plane that has been taken
+    bool retained;  // not a member
+  };
+  struct Best {
+    std::size_t candidate = 0;
+    std::uint32_t members = 0;
+  };
+
+  double reachOf(std::uint32_t v, const DVec3& normal) const {
+    if (ellipsoids_.empty()) return eps_;
+    return std::sqrt(std::max(0.0, glm::dot(normal, ellipsoids_[v].times(normal))));
+  }
+
+  void read(std::span<const std::uint32_t> vertices, const ClusterShape& shape) {
+    const DVec3 normal(shape.frame.normal), center(shape.center);
+    candidates_.clear();
+    for (const std::uint32_t v : vertices) {
+      const bool moves = inner_[v];
+      candidates_.push_back(
+          {v, glm::dot(DVec3(mesh_.positions[v]) - center, normal), moves ? reachOf(v, normal) : -1.0, moves, true});
+    }
+  }
+
+  // How many free vertices have a height within their reach: those whose interval has begun less those it has ended
+  // for.
+  Best findBest() {
+    begins_.clear();
+    ends_.clear();
+    for (const Candidate& c : candidates_) {
+      if (!c.is_free) continue;
+      begins_.push_back(c.height - c.reach);
+      ends_.push_back(c.height + c.reach);
+    }
+    Best best;
+    if (begins_.size() < min_members_) return best;
+    std::sort(begins_.begin(), begins_.end());
+    std::sort(ends_.begin(), ends_.end());
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+      const Candidate& c = candidates_[i];
+      if (!c.retained) continue;
+      const auto begun = std::upper_bound(begins_.begin(), begins_.end(), c.height) - begins_.begin();
+      const auto ended = std::lower_bound(ends_.begin(), ends_.end(), c.height) - ends_.begin();
+      const auto members = static_cast<std::uint32_t>(begun - ended) - (c.is_free ? 1U : 0U);
+      const bool nearer = members == best.members && std::abs(c.height) < std::abs(candidates_[best.candidate].height);
+      if (members > best.members || nearer) best = {i, members};
+    }
+    return best;
+  }
+
+  void take(const Best& best, std::uint32_t seed, std::vector<std::uint32_t>& owner) {
+    const double height = candidates_[best.candidate].height;
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+      Candidate& c = candidates_[i];
+      // As they were counted, to the last bit.
+      if (i == best.candidate || !c.is_free || !(c.height - c.reach <= height && height <= c.height + c.reach))
+        continue;
+      owner[c.vertex] = seed;
+      c.is_free = c.retained = false;
+    }
+  }
+
+  const mesh::Mesh& mesh_;
+  const std::vector<bool>& inner_;
+  double eps_;
+  std::span<const Sym3> ellipsoids_;
+  std::uint32_t min_members_;
+  std::vector<Candidate> candidates_;
+  std::vector<double> begins_, ends_;
+};
+
+// Finds groups of all patches, each vertex being inside one at most, and joins them in the order of the patches.
+Findings searchPatches(const mesh::Mesh& mesh, const PatchSet& set, double eps, std::span<const Sym3> ellipsoids,
+                       std::uint32_t min_members, std::vector<PlaneFrame>& planes, TaskPool& pool) {
+  constexpr std::size_t kPatchesPerPiece = 16;
+  const std::size_t count = set.patches.size();
+  const std::vector<bool> inner = innerVertices(mesh, set, !ellipsoids.empty());
+  std::vector<std::vector<Findings::Seed>> seeds(count);
+  Findings findings;
+  findings.owner.assign(mesh.vertexCount(), kNoIndex);
+  planes.resize(count);
+  pool.parallelFor(static_cast<int>((count + kPatchesPerPiece - 1) / kPatchesPerPiece), [&](int piece, int) {
+    PatchSearch search(mesh, inner, eps, ellipsoids, min_members);
+    const std::size_t begin = static_cast<std::size_t>(piece) * kPatchesPerPiece;
+    for (std::size_t p = begin; p < std::min(count, begin + kPatchesPerPiece); ++p) {
+      const Patch& patch = set.patches[p];
+      const ClusterShape shape = shapeOfFaces(mesh, trianglesOf(patch, set));
+      planes[p] = shape.frame;
+      seeds[p] = search.search(verticesOf(patch, set), shape, static_cast<std::uint32_t>(p), findings.owner);
+    }
+  });
+  for (std::size_t p = 0; p < count; ++p) {
+    const auto first = static_cast<std::uint32_t>(findings.seeds.size());
+    for (const std::uint32_t v : verticesOf(set.patches[p], set))
+      if (inner[v] && findings.owner[v] != kNoIndex) findings.owner[v] += first;
+    findings.seeds.insert(findings.seeds.end(), seeds[p].begin(), seeds[p].end());
+  }
+  return findings;
+}
+
+}  // namespace
+
+VertexGroups groupInPatches(const mesh::Mesh& mesh, const PatchSet& patches, const PatchGroupOptions& options,
+                            TaskPool& pool) {
+  assert(options.epsilon >= 0.0 && options.epsilon <= kMaxEpsilon && options.min_members >= 1);
+  mesh::assertValid(mesh);
+  const std::int64_t start_ns = nowNs();
+  const std::vector<std::uint32_t> in_use = verticesInUse(mesh.positions, mesh.triangles);
+
+  VertexGroups out;
+  out.kind = GroupKind::kPlane;
+  out.epsilon = options.epsilon;
+  out.extent = extentOf(mesh.positions, in_use);
+  chooseMetric(mesh, options.metric, options.limit, out);
+  const double eps = out.epsilon * out.extent;
+  const std::vector<Sym3> ellipsoids =
+      out.metric == Metric::kQuadric ? vertexEllipsoids(mesh, eps, out.limit) : std::vector<Sym3>{};
+  Findings findings = searchPatches(mesh, patches, eps, ellipsoids, options.min_members, out.planes, pool);
+  assembleGroups(mesh.positions, in_use, std::move(findings), Placement(ellipsoids), out);
+  finishGroups(mesh, options.restore_flipped, start_ns, out);
+  return out;
+}
+
+}  // namespace sheaf::grouping

@@ -42,7 +42,8 @@ void writePly(const std::string& path, const Clustering& c) {
 }
 
 void drawClusters(const ClusterRequest& request, const Clustering& clustering, scenes::Scene scene, TaskPool& pool) {
-  const scenes::Camera camera = chooseUnfittedCamera(scene, request.view, request.aspect());
+  Coloring coloring(clustering, request.cut.overlay, scene);
+  const scenes::Camera camera = coloring.chooseCamera(scene, request.view, request.aspect());
   if (scene.lights.empty()) scenes::addDefaultLights(scene, camera);
   pipeline::RenderSettings settings;
   settings.width = request.size.width;
@@ -50,7 +51,6 @@ void drawClusters(const ClusterRequest& request, const Clustering& clustering, s
   settings.background = backgroundOf(request, scene);
   settings.want_linear = settings.want_ids = true;
   Box3 bounds = boundsOf(scene);
-  Coloring coloring(clustering, request.cut.overlay, scene);
   pipeline::PreparedScene prepared = pipeline::prepareScene(std::move(scene), pool);
   coloring.finish(prepared, bounds, pool);
   pipeline::Frame frame;

@@ -36,7 +36,7 @@ constexpr const char* kFooter =
     "  sheaf render builtin:terrain --frames 50 --timings=times.json --trace trace.json\n"
     "  sheaf render scan.ply --grouping planar --epsilon 0.1% -o grouped.png --timings\n"
     "  sheaf render scan.ply --color-by cluster --tolerance 1% --overlay planes -o clusters.png\n"
-    "  sheaf render scan.ply --grouping planar --color-by group -o groups.png\n"
+    "  sheaf render scan.ply --grouping cluster --color-by group --overlay planes -o groups.png\n"
     "\n";
 
 [[noreturn]] void refuse(const std::string& reason) {
@@ -91,7 +91,7 @@ void refuseIdleColorOptions(const RenderArguments& arguments, const RenderReques
   if (request.color_by == ColorBy::kGroup && request.cut.overlay.boxes)
     refuse("--overlay boxes: vertex groups have planes (or lines) only");
   if (request.color_by == ColorBy::kGroup && request.grouping.method == pipeline::Grouping::kNone)
-    refuse("--color-by group: there are no vertex groups: add --grouping planar or linear");
+    refuse("--color-by group: there are no vertex groups: add --grouping planar, linear or cluster");
 }
 
 void understandColors(const RenderArguments& arguments, RenderRequest& request) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -33,6 +34,22 @@ std::uint32_t checksumOf(const mesh::Mesh& mesh) {
     crc = crc32(crc, reinterpret_cast<const Bytef*>(corners.data()), static_cast<uInt>(count * sizeof corners[0]));
   }
   return static_cast<std::uint32_t>(crc);
+}
+
+Box3 finiteBounds(const mesh::Mesh& mesh) {
+  Box3 box;
+  for (const Vec3& p : mesh.positions)
+    if (isFinite(p)) box.extend(p);
+  return box;
+}
+
+/// A shape reaches no further than its mesh. Twice that leaves room for rounding, and keeps off what could overflow.
+bool isAround(const ClusterShape& shape, const Box3& box) {
+  if (shape == ClusterShape{}) return true;  // of faces that do not count
+  const DVec3 middle = 0.5 * (DVec3(box.lo) + DVec3(box.hi)), size = DVec3(box.hi) - DVec3(box.lo);
+  const double reach = 2.0 * glm::length(size) + 1e-3 * glm::length(middle);
+  const DVec3 farthest = glm::max(glm::abs(DVec3(shape.lo)), glm::abs(DVec3(shape.hi)));
+  return glm::distance(DVec3(shape.center), middle) <= reach && std::max({farthest.x, farthest.y, farthest.z}) <= reach;
 }
 
 std::string encodeContent(const FaceClusters& clusters, const mesh::Mesh& mesh) {
@@ -115,8 +132,11 @@ class Decoder {
     if (count > in_.left() / sizeof(ClusterShape)) fail("more shapes than bytes");
     out.shapes.resize(count);
     in_.getAll(std::span(out.shapes));
-    for (std::uint32_t i = 0; i < count; ++i)
+    const Box3 box = finiteBounds(mesh_);
+    for (std::uint32_t i = 0; i < count; ++i) {
       if (!isSound(out.shapes[i])) fail(fmt::format("shape {} is not possible", i));
+      if (!isAround(out.shapes[i], box)) fail(fmt::format("shape {} is not where the mesh is", i));
+    }
     // The bits stand in the order of the merges, the shapes depth first.
     std::uint32_t next = 0;
     walkDown(out, [&](std::uint32_t node) {

@@ -11,8 +11,8 @@ namespace sheaf::pipeline {
 namespace {
 
 constexpr float kDark = 0.01F;
-constexpr double kWidth = 0.003;        ///< of a bar, as a fraction of the extent of all there is
-constexpr double kLargestWidth = 0.04;  ///< the same of the diagonal of what it outlines
+constexpr double kWidth = 0.004;        ///< of a bar, as a fraction of the extent of all there is
+constexpr double kLargestWidth = 0.02;  ///< the same of the diagonal of what it outlines
 constexpr int kLatticeCells = 4;        ///< per side of a plane
 
 /// A place and three axes at right angles, not all of which need a length.

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <vector>
 
 #include "bench/experiments/experiment.h"
 #include "bench/experiments/picture.h"
@@ -9,7 +10,7 @@
 #include "grouping/cluster_colors.h"
 #include "grouping/cluster_cuts.h"
 #include "grouping/dual_graph.h"
-#include "mesh/normals.h"
+#include "pipeline/overlays.h"
 #include "scenes/painted_parts.h"
 
 namespace sheaf::experiments {
@@ -82,29 +83,47 @@ std::string balanceTable(Context& context) {
   return table.text();
 }
 
-Image8 picture(Context& context, const std::string& model, const CostWeights& weights, std::uint32_t count) {
-  mesh::Mesh mesh = context.models.whole(model);
-  const FaceClusters clusters = clustered(context, mesh, weights);
+Image8 picture(Context& context, const std::string& model, const FaceClusters& clusters, std::uint32_t count,
+               const Panel& panel = {}, const pipeline::Overlay& overlay = {}) {
+  const mesh::Mesh& mesh = context.models.whole(model);
   const ClusterCut cut = grouping::cutByCount(clusters, count);
-  const auto colors = grouping::colorClusters(mesh, clusters, cut, scenes::kPartColors);
-  mesh::makeSmoothNormals(mesh, kPi);
   scenes::Material material = plainGrey();
   material.base_color = Vec4(1.0F);
-  scenes::Scene scene = sceneOf(scenes::paintedParts(mesh, grouping::clusterOfFace(clusters, cut), colors), material);
-  const Panel panel;
-  const scenes::Camera camera = cameraOn(scene, 20.0, 10.0, panel);
-  return draw(std::move(scene), camera, panel, context.pool);
+  scenes::Scene scene = sceneOf(mesh, material);
+  Extras extras;
+  extras.colors = pipeline::colorsByPart(scene, grouping::clusterOfFace(clusters, cut),
+                                         grouping::colorClusters(mesh, clusters, cut, scenes::kPartColors));
+  if (overlay.any()) extras.overlay = pipeline::clusterOverlay(mesh, clusters, cut, overlay);
+  const scenes::Camera camera = cameraOn(extras.overlay ? *extras.overlay : scene, 20.0, 10.0, panel);
+  return draw(std::move(scene), camera, panel, context.pool, std::move(extras));
+}
+
+std::string pictures(Context& context) {
+  const mesh::Mesh& bunny = context.models.whole("bunny");
+  const FaceClusters without = clustered(context, bunny, {1.0, 1.0, 0.0, 0.0}),
+                     published = clustered(context, bunny, kAsPublished), usual = clustered(context, bunny, {});
+  const std::array<Image8, 3> biases = {picture(context, "bunny", without, 100),
+                                        picture(context, "bunny", published, 100),
+                                        picture(context, "bunny", usual, 100)};
+  const FaceClusters figure = clustered(context, context.models.whole("armadillo"), {});
+  std::vector<Image8> cuts;
+  for (const std::uint32_t count : {1024U, 256U, 64U, 16U})
+    cuts.push_back(picture(context, "armadillo", figure, count, {.width = 270, .height = 330}));
+  const Panel large{540, 405};
+  const std::array<Image8, 2> overlays = {picture(context, "bunny", usual, 24, large, {.boxes = true}),
+                                          picture(context, "bunny", usual, 24, large, {.planes = true})};
+  return showPicture(context, "clusters_shape.png", sideBySide(biases),
+                     "The bunny in 100 clusters: without shape bias; with it, as published; with shape and balance, "
+                     "as sheaf does by default.") +
+         showPicture(context, "clusters_cuts.png", sideBySide(cuts),
+                     "Four cuts of one hierarchy of the armadillo: 1024, 256, 64 and 16 clusters.") +
+         showPicture(context, "clusters_overlays.png", sideBySide(overlays),
+                     "The bunny in 24 clusters: their oriented boxes, and the planes that fit them.");
 }
 
 }  // namespace
 
 std::string writeClustering(Context& context) {
-  constexpr CostWeights kNoShape{1.0, 1.0, 0.0, 0.0};
-  const std::array<Image8, 3> biases = {picture(context, "bunny", kNoShape, 100),
-                                        picture(context, "bunny", kAsPublished, 100),
-                                        picture(context, "bunny", {}, 100)};
-  const std::array<Image8, 3> cuts = {picture(context, "bunny", {}, 1000), picture(context, "bunny", {}, 200),
-                                      picture(context, "bunny", {}, 40)};
   return "Hierarchies of face clusters as in [HFC]: neighbouring faces are joined in the order of how flat, how evenly "
          "turned and how round what they make is. Times of [HFC] are of a Pentium III at 450 MHz; its other models "
          "than "
@@ -116,11 +135,7 @@ std::string writeClustering(Context& context) {
          "faces, "
          "with a weight of 0.1. The bunny with other weights; planarity is the RMS distance of corners to the plane of "
          "their cluster, of the longest edge of the box:\n\n" +
-         balanceTable(context) +
-         showPicture(context, "clusters_shape.png", sideBySide(biases),
-                     "The bunny in 100 clusters: without shape bias; with it, as published; with shape and balance, "
-                     "as sheaf does by default.") +
-         showPicture(context, "clusters_cuts.png", sideBySide(cuts), "Three cuts of one hierarchy: 1000, 200 and 40.");
+         balanceTable(context) + pictures(context);
 }
 
 }  // namespace sheaf::experiments

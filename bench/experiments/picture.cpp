@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "mesh/normals.h"
+#include "pipeline/overlays.h"
 #include "pipeline/prepare.h"
 #include "pipeline/renderer.h"
 #include "raster/srgb.h"
@@ -73,19 +74,24 @@ scenes::Camera cameraOn(const scenes::Scene& scene, double azimuth, double eleva
   return scenes::fitCamera(scene, scenes::orbitView(radians(azimuth), radians(elevation)), aspect, kFov, false);
 }
 
-Image8 draw(scenes::Scene scene, const scenes::Camera& camera, const Panel& panel, TaskPool& pool) {
+Image8 draw(scenes::Scene scene, const scenes::Camera& camera, const Panel& panel, TaskPool& pool, Extras extras) {
   scenes::addDefaultLights(scene, camera);
-  const scenes::Camera fitted = scenes::fitClipPlanes(camera, scenes::boundsOf(scene));
+  Box3 bounds = scenes::boundsOf(scene);
+  if (extras.overlay) bounds.extend(scenes::boundsOf(*extras.overlay));
+  const scenes::Camera fitted = scenes::fitClipPlanes(camera, bounds);
   pipeline::RenderSettings settings;
   settings.width = kSamplesPerSide * panel.width;
   settings.height = kSamplesPerSide * panel.height;
   settings.background = Vec4(1.0F);
   settings.want_srgb = false;
   settings.want_linear = true;
-  const pipeline::PreparedScene prepared = pipeline::prepareScene(std::move(scene), pool);
+  settings.want_ids = extras.colors.has_value();
+  pipeline::PreparedScene prepared = pipeline::prepareScene(std::move(scene), pool);
+  if (extras.overlay) pipeline::addOverlay(std::move(*extras.overlay), prepared, pool);
   pipeline::Renderer renderer(pool);
   pipeline::Frame frame;
   renderer.render(prepared, fitted, settings, frame);
+  if (extras.colors) pipeline::colorPixels(*extras.colors, frame, pool);
   return averaged(frame.linear);
 }
 

@@ -267,7 +267,8 @@ TEST_CASE("cli/render: colours that cannot be shown are refused: one line, exit 
   const TempFolder folder;
   const std::vector<std::pair<Words, std::string>> wrong = {
       {{"--color-by", "face"}, "--color-by face: expected one of cluster, group, patch"},
-      {{"--color-by", "group"}, "--color-by group: there are no vertex groups: add --grouping planar or linear"},
+      {{"--color-by", "group"},
+       "--color-by group: there are no vertex groups: add --grouping planar, linear or cluster"},
       {{"--color-by", "patch", "--overlay", "planes"}, "--overlay planes: patches have boxes only"},
       {{"--color-by", "group", "--grouping", "planar", "--overlay", "boxes,planes"}, "vertex groups have planes"},
       {{"--overlay", "boxes"}, "--overlay is drawn over parts of a surface: say with --color-by which"},
@@ -290,6 +291,7 @@ TEST_CASE("cli/render: colours that cannot be shown are refused: one line, exit 
 }
 
 TEST_CASE("cli/render: a coloured EXR is linear and has its ids") {
+  setenv("SHEAF_MODULE_DIR", SHEAF_TEST_MODULE_DIR, 1);  // for this program, which reads the picture
   const TempFolder folder;
   const Words words = {"render", "builtin:sphere?n=8", "--size", "64x48", "--color-by", "patch", "-o",
                        "a.exr",  "--channels",         "ids"};

@@ -24,8 +24,8 @@ Model makeModel(mesh::Mesh mesh) {
   return {std::move(mesh), std::move(clusters)};
 }
 
-// A closed ball, a field with a border, faces through each other in many pieces, faces without area or number; and one
-// far away from the origin.
+// A closed ball, a field with a border, faces through each other in many pieces, faces without area or number; one far
+// away from the origin, and one a million away.
 std::vector<Model> models() {
   std::mt19937 rng(0x9e51);
   std::vector<Model> models;
@@ -37,6 +37,8 @@ std::vector<Model> models() {
   models.push_back(makeModel(soup));
   mesh::Mesh far = lumpyBall(rng, 20, 20);
   for (Vec3& p : far.positions) p += Vec3(5000.0F, -3000.0F, 1000.0F);
+  models.push_back(makeModel(far));
+  for (Vec3& p : far.positions) p = 50.0F * (p - Vec3(5000.0F, -3000.0F, 1000.0F)) + Vec3(1e6F, -1e6F, 1e6F);
   models.push_back(makeModel(far));
   return models;
 }

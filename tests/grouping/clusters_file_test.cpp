@@ -145,6 +145,7 @@ TEST_CASE("grouping/clusters_file: refusals name the file and the reason") {
         "a.sheaf: damaged face clusters: a cost is no number");
   CHECK(refusalOf(overwritten(bytes, shapes_at, std::numeric_limits<float>::infinity())).find("is not possible") !=
         std::string::npos);
+  CHECK(refusalOf(overwritten(bytes, shapes_at, 1e30F)).find("is not where the mesh is") != std::string::npos);
 }
 
 TEST_CASE("grouping/clusters_file: clusters of another mesh are refused, those of another numbering are not") {

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <numeric>
 
@@ -308,6 +309,74 @@ TEST_CASE("grouping/face_clusters: moving, turning and scaling the mesh leaves t
           return Vec3(4.0F * p.x - 3.0F * p.y, 3.0F * p.x + 4.0F * p.y,
                       5.0F * p.z);  // by acos(4/5), and 5 times as large
         }) == expected);
+}
+
+TEST_CASE("grouping/face_clusters: a million away the hierarchy is the same, and its shapes as exact") {
+  std::mt19937 rng(0x0b5f);
+  mesh::Mesh near = lumpyBall(rng, 14, 18, 0.05F);
+  for (Vec3& p : near.positions) p = glm::round(p * 640.0F) / 16.0F;  // floats beyond 2^20 have steps of 1/8
+  for (Vec3& p : near.positions) p = glm::round(p * 8.0F) / 8.0F;
+  mesh::Mesh far = near;
+  const Vec3 away(1048576.0F, -1048576.0F, 1200000.0F);
+  for (Vec3& p : far.positions) p += away;
+  const FaceClusters here = clustersOf(near), there = clustersOf(far);
+  CHECK(clusterSets(here) == clusterSets(there));
+  CHECK(here.children == there.children);
+  for (std::size_t i = 0; i < here.cost.size(); ++i)
+    CHECK(here.cost[i] == doctest::Approx(there.cost[i]).epsilon(1e-5));
+  REQUIRE(here.shapes.size() == there.shapes.size());
+  for (std::size_t i = 0; i < here.shapes.size(); ++i) {
+    const ClusterShape &a = here.shapes[i], &b = there.shapes[i];
+    CHECK(a.area == doctest::Approx(b.area).epsilon(1e-6));
+    CHECK(a.rms_distance == doctest::Approx(b.rms_distance).epsilon(0.01));
+    // The centre is rounded to 1/8 there, and the box is counted from it.
+    CHECK(glm::distance(a.hi - a.lo, b.hi - b.lo) < 1e-3F);
+    CHECK(glm::distance(DVec3(a.center), DVec3(b.center) - DVec3(away)) < 0.25);
+  }
+}
+
+TEST_CASE("grouping/face_clusters: turned about any axis, clusters keep their faces, boxes, areas and cones") {
+  std::mt19937 rng(0x0b60);
+  const mesh::Mesh mesh = lumpyBall(rng, 10, 14, 0.06F);
+  const FaceClusters expected = clustersOf(mesh);
+  for (const auto& [angle, axis] : {std::pair(0.7, DVec3(1.0, 2.0, -0.5)), std::pair(2.5, DVec3(-0.3, 0.1, 1.0)),
+                                    std::pair(1.1, DVec3(0.0, 1.0, 1.0))}) {
+    CAPTURE(angle);
+    const DMat4 turn = glm::rotate(DMat4(1.0), angle, axis);
+    mesh::Mesh turned = mesh;
+    for (Vec3& p : turned.positions) p = Vec3(DVec3(turn * DVec4(DVec3(p) * 3.7, 1.0)) + DVec3(20.0, -4.0, 9.0));
+    const FaceClusters clusters = clustersOf(turned);
+    CHECK(clusterSets(clusters) == clusterSets(expected));
+    REQUIRE(clusters.children == expected.children);
+    for (std::size_t i = 0; i < expected.shapes.size(); ++i) {
+      const ClusterShape &a = expected.shapes[i], &b = clusters.shapes[i];
+      CHECK(b.area == doctest::Approx(3.7 * 3.7 * a.area).epsilon(1e-4));
+      CHECK(b.rms_distance == doctest::Approx(3.7 * a.rms_distance).epsilon(1e-3));
+      CHECK(glm::distance(DVec3(b.frame.normal), DVec3(turn * DVec4(DVec3(a.frame.normal), 0.0))) < 1e-3);
+      CHECK(glm::distance(b.hi - b.lo, 3.7F * (a.hi - a.lo)) < 1e-2F);
+      CHECK(b.cone.sin_angle == doctest::Approx(a.cone.sin_angle).epsilon(1e-3));
+    }
+  }
+}
+
+TEST_CASE(
+    "grouping/face_clusters: needles of any thinness, and edges of three faces, have finite costs and sound shapes") {
+  for (const float thin : {1e-2F, 1e-4F, 1e-6F, 1e-9F, 0.0F}) {
+    CAPTURE(thin);
+    std::mt19937 rng(0x4eed);
+    mesh::Mesh mesh = hills(rng, 12, 0.1F);
+    for (Vec3& p : mesh.positions) p.x *= thin;
+    // A third sheet on an edge within, and one sheet twice.
+    mesh.positions.emplace_back(0.5F, 2.0F, 0.5F);
+    const auto top = static_cast<std::uint32_t>(mesh.positions.size() - 1);
+    mesh.triangles.push_back({mesh.triangles[60][0], mesh.triangles[60][1], top});
+    mesh.triangles.push_back(mesh.triangles[60]);
+    const FaceClusters clusters = clustersOf(mesh, {}, 2);
+    CHECK(findInconsistency(clusters) == "");
+    CHECK(clusters.roots.size() == 1);
+    for (const float cost : clusters.cost) CHECK(std::isfinite(cost));
+    for (const ClusterShape& shape : clusters.shapes) CHECK(isSound(shape));
+  }
 }
 
 TEST_CASE("grouping/face_clusters: in a plane only roundness decides") {

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdint>
+#include <vector>
 
 namespace sheaf {
 
@@ -16,6 +18,37 @@ namespace {
 void allowMoreThreadsThanCores() {
   static const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1024);
 }
+
+// The pieces [begin, end) that are left of a worker's share; -1 when there are none. On a cache line of its own.
+class alignas(64) Share {
+ public:
+  void set(int begin, int end) { range_.store(pack(begin, end), std::memory_order_release); }
+
+  int takeFirst() {
+    return take([](std::uint32_t& begin, std::uint32_t&) { return static_cast<int>(begin++); });
+  }
+  int takeLast() {
+    return take([](std::uint32_t&, std::uint32_t& end) { return static_cast<int>(--end); });
+  }
+
+ private:
+  static std::uint64_t pack(std::int64_t begin, std::int64_t end) {
+    return static_cast<std::uint64_t>(begin) << 32 | static_cast<std::uint64_t>(end);
+  }
+
+  template <typename Take>
+  int take(const Take& from) {
+    std::uint64_t range = range_.load(std::memory_order_acquire);
+    while (true) {
+      auto begin = static_cast<std::uint32_t>(range >> 32), end = static_cast<std::uint32_t>(range);
+      if (begin >= end) return -1;
+      const int piece = from(begin, end);
+      if (range_.compare_exchange_weak(range, pack(begin, end), std::memory_order_acq_rel)) return piece;
+    }
+  }
+
+  std::atomic<std::uint64_t> range_{0};
+};
 
 }  // namespace
 
@@ -38,14 +71,19 @@ void TaskPool::parallelFor(int count, const std::function<void(int, int)>& body)
     for (int piece = 0; piece < count; ++piece) body(piece, 0);
     return;
   }
+  std::vector<Share> shares(static_cast<std::size_t>(workers));
+  const auto beginOf = [&](int worker) { return static_cast<int>(std::int64_t{count} * worker / workers); };
+  for (int w = 0; w < workers; ++w) shares[static_cast<std::size_t>(w)].set(beginOf(w), beginOf(w + 1));
   // Acquire and release here say what oneTBB sees to anyway, in a way that ThreadSanitizer can see too: what was
   // written before the call is seen by every worker, what workers write is seen after it.
-  std::atomic<int> next{0};
   std::atomic<int> finished{0};
   const auto work = [&](int worker) {
-    for (int piece = next.fetch_add(1, std::memory_order_acq_rel); piece < count;
-         piece = next.fetch_add(1, std::memory_order_acq_rel))
-      body(piece, worker);
+    Share& own = shares[static_cast<std::size_t>(worker)];
+    for (int piece = own.takeFirst(); piece >= 0; piece = own.takeFirst()) body(piece, worker);
+    for (int w = 1; w < workers; ++w) {
+      Share& other = shares[static_cast<std::size_t>((worker + w) % workers)];
+      for (int piece = other.takeLast(); piece >= 0; piece = other.takeLast()) body(piece, worker);
+    }
     finished.fetch_add(1, std::memory_order_release);
   };
   arena_->arena.execute([&] { tbb::parallel_for(0, workers, work, tbb::simple_partitioner{}); });

@@ -17,9 +17,11 @@ class TaskPool {
 
   int threadCount() const { return thread_count_; }
 
-  /// Calls body(piece, worker) once for each piece in [0, count), and returns when all are done. Pieces are handed out
-  /// in ascending order; each worker in [0, threadCount()) runs on one thread at a time, so scratch memory may be
-  /// indexed by it. The first exception that a body throws is rethrown here.
+  /// Calls body(piece, worker) once for each piece in [0, count), and returns when all are done. Every worker in
+  /// [0, threadCount()) has a share of neighbouring pieces, which it takes in ascending order; whoever is done takes
+  /// from the far ends of the others' shares. So a worker mostly gets the same pieces in every call, and finds their
+  /// memory in its own caches. Each runs on one thread at a time: scratch memory may be indexed by it. The first
+  /// exception that a body throws is rethrown here.
   void parallelFor(int count, const std::function<void(int piece, int worker)>& body);
 
  private:

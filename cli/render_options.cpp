@@ -23,9 +23,9 @@ constexpr const char* kFooter =
     "or, if it has none, --view iso. Lights are added when the file has none. --eye, --target and --up X,Y,Z are in\n"
     "the file's coordinates; --up may be given twice, once as axis and once as direction.\n"
     "\n"
-    "--color-by group shows what is drawn by planes or lines; where these have too few vertices of a patch to be "
-    "worth\n"
-    "it, vertices are drawn in full and the surface stays white.\n"
+    "--color-by group shows what is drawn by planes or lines, by default as --prefer memory draws it. Where these "
+    "have\n"
+    "few vertices of a patch, vertices are drawn in full and the surface stays white.\n"
     "\n"
     "Examples:\n"
     "  sheaf render model.glb -o model.png\n"
@@ -96,6 +96,9 @@ void refuseIdleColorOptions(const RenderArguments& arguments, const RenderReques
 
 void understandColors(const RenderArguments& arguments, RenderRequest& request) {
   if (arguments.color_by) request.color_by = choose("--color-by", *arguments.color_by, kColorByNames);
+  // Who wants to see groups wants to see them in small meshes too.
+  if (request.color_by == ColorBy::kGroup && !arguments.grouping.prefer)
+    request.grouping.prefer = pipeline::Prefer::kMemory;
   request.cut = understandCut(arguments.cut);
   refuseIdleColorOptions(arguments, request);
 }

@@ -179,12 +179,15 @@ TEST_CASE("pipeline/grouped: by planes of patches, what differs from the ungroup
     for (const auto& [form, epsilon] : {std::pair{ParameterForm::k16Bit, 0.005}, {ParameterForm::kFloat, 0.02}}) {
       GroupingOptions options = planar(epsilon, form);
       options.method = Grouping::kCluster;
+      options.prefer = Prefer::kMemory;
       const PreparedScene by_groups = prepare(scene, cameras[0], options, pool);
       const PreparedScene in_full = prepare(scene, cameras[0], ungrouped(options), pool);
       for (const scenes::Camera& camera : cameras) {
-        const Frame grouped = draw(by_groups, camera, pool);
-        CHECK(samePicture(grouped, draw(by_groups, camera, pool, false)));
-        const Frame expected = draw(in_full, camera, pool);
+        // With culling in every second view. Cones are those of the original surface, so that with and without may
+        // differ.
+        const bool cull = &camera == &cameras[0] || &camera == &cameras[2];
+        const Frame grouped = draw(by_groups, camera, pool, cull);
+        const Frame expected = draw(in_full, camera, pool, cull);
         CHECK(expected.counters.vertices_grouped == 0);
         CHECK(raster::compareImages(grouped.color, expected.color).differing_pixels * 100 <= kWidth * kHeight);
         grouped_vertices += grouped.counters.vertices_grouped;

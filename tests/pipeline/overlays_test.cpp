@@ -128,6 +128,7 @@ TEST_CASE("pipeline/overlays: boxes of patches and planes of groups stand where 
   scene.instances = {{0, 0, DMat4(1.0)}, {0, 0, moved}};
   GroupingOptions planar;
   planar.method = Grouping::kPlanar;
+  planar.prefer = Prefer::kMemory;
   const Box3 bounds = boundsOf(scene);
   const PreparedScene prepared = prepareScene(std::move(scene), pool, planar);
   for (const bool of_groups : {false, true}) {

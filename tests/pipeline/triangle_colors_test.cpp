@@ -118,6 +118,7 @@ TEST_CASE("pipeline/triangle_colors: a flat step is one group, steps differ, and
   const std::vector<mesh::Mesh> surfaces = {stair()};
   GroupingOptions planar;
   planar.method = Grouping::kPlanar;
+  planar.prefer = Prefer::kMemory;
   planar.epsilon = 0.0;
   const TriangleColors colors = colorsByGroup(prepareScene(sceneOf(stair()), pool, planar), surfaces);
   REQUIRE(colors.lists.size() == 1);

@@ -6,14 +6,13 @@
 #include <utility>
 
 #include "bench/experiments/experiment.h"
+#include "bench/experiments/lit_scene.h"
 #include "bench/experiments/picture.h"
 #include "bench/experiments/rounds.h"
 #include "bench/experiments/table.h"
 #include "pipeline/baselines.h"
 #include "pipeline/comparison.h"
-#include "scenes/builtin.h"
 #include "scenes/camera.h"
-#include "scenes/camera_path.h"
 
 namespace sheaf::experiments {
 namespace {
@@ -21,25 +20,31 @@ namespace {
 using pipeline::Grouping;
 using pipeline::GroupingOptions;
 
-constexpr std::array<std::pair<Grouping, const char*>, 2> kMethods = {
-    {{Grouping::kPlanar, "axes"}, {Grouping::kCluster, "patches"}}};
-constexpr int kWidth = 1280, kHeight = 720;
-constexpr double kAspect = static_cast<double>(kWidth) / kHeight;
+using pipeline::Prefer;
 
-scenes::Scene loadScene(Context& context, const std::string& name) {
-  scenes::Scene scene = name.starts_with("builtin:") ? scenes::buildBuiltin(name.substr(8))
-                                                     : sceneOf(context.models.whole(name), plainGrey());
-  const scenes::Camera camera = scenes::fitCamera(scene, scenes::namedView("iso"), kAspect, radians(40.0), false);
-  if (scene.lights.empty()) scenes::addDefaultLights(scene, camera);
-  return scene;
-}
+struct Way {
+  const char* name;
+  Grouping method;
+  Prefer prefer;
 
-std::vector<scenes::Camera> orbit(const scenes::Scene& scene, int count) {
-  scenes::PathOptions path;
-  path.azimuth_rad = radians(30.0);
-  path.elevation_rad = radians(20.0);
-  path.aspect = kAspect;
-  return scenes::orbitPath(scene, count, path);
+  GroupingOptions options() const {
+    GroupingOptions options;
+    options.method = method;
+    options.prefer = prefer;
+    return options;
+  }
+};
+constexpr std::array<Way, 2> kCompared = {
+    {{"axes", Grouping::kPlanar, Prefer::kMemory}, {"patches", Grouping::kCluster, Prefer::kMemory}}};
+constexpr std::array<Way, 3> kTimed = {{{"axes", Grouping::kPlanar, Prefer::kSpeed},
+                                        {"patches", Grouping::kCluster, Prefer::kSpeed},
+                                        {"patches, for memory", Grouping::kCluster, Prefer::kMemory}}};
+
+pipeline::RenderSettings timedSettings() {
+  pipeline::RenderSettings settings;
+  settings.width = 1280;
+  settings.height = 720;
+  return settings;
 }
 
 double planesPerPatch(const pipeline::PreparedScene& scene) {
@@ -55,19 +60,17 @@ std::string qualityTable(Context& context, std::span<const std::string> names) {
   Table table({"mesh, planes across", "eliminated %", "planes per patch", "bytes per vertex", "displacement RMS %",
                "normals RMS degrees", "faces flipped %", "pixels differing %", "RMS error", "silhouette px",
                "of drawing: pixels %"});
-  pipeline::RenderSettings settings;
-  settings.width = kWidth;
-  settings.height = kHeight;
+  const pipeline::RenderSettings settings = timedSettings();
   for (const std::string& name : names) {
-    const scenes::Scene scene = loadScene(context, name);
-    for (const auto& [method, text] : kMethods) {
-      GroupingOptions options;
-      options.method = method;
-      const pipeline::Comparison c = pipeline::compareGrouping(scene, orbit(scene, 4), options, settings, context.pool);
+    const scenes::Scene scene = litScene(context, name);
+    for (const Way& way : kCompared) {
+      const GroupingOptions options = way.options();
+      const pipeline::Comparison c =
+          pipeline::compareGrouping(scene, timedOrbit(scene, 4), options, settings, context.pool);
       const pipeline::ViewComparison& worst = c.views[c.worst_view];
       double drawing = 0.0;
       for (const auto& view : c.views) drawing = std::max(drawing, view.drawing.pixels.differingFraction());
-      table.add({fmt::format("{}, {}", name, text), percent(c.geometry.eliminated()),
+      table.add({fmt::format("{}, {}", name, way.name), percent(c.geometry.eliminated()),
                  fmt::format("{:.2f}", planesPerPatch(pipeline::prepareScene(scene, context.pool, options))),
                  fmt::format("{:.1f}", c.grouped_bytes_per_vertex), percent(c.geometry.displacement_rms, 3),
                  fmt::format("{:.1f}", degrees(c.geometry.normal_deviation_rms_rad)),
@@ -83,24 +86,22 @@ std::string timeTable(Context& context, std::span<const std::string> names) {
   Table table({"mesh, planes across", "transform+clip: ungrouped ms", "grouped ms", "times as fast",
                "geometry: times as fast", "raster: times as fast", "frame: ungrouped ms", "grouped ms",
                "times as fast"});
-  pipeline::RenderSettings settings;
-  settings.width = kWidth;
-  settings.height = kHeight;
+  const pipeline::RenderSettings settings = timedSettings();
   for (const std::string& name : names) {
-    const scenes::Scene scene = loadScene(context, name);
-    const std::vector<scenes::Camera> cameras = orbit(scene, 4);
-    for (const auto& [method, text] : kMethods) {
-      GroupingOptions options;
-      options.method = method;
-      pipeline::BaselineBench bench(scene, options, settings, context.pool);
+    const scenes::Scene scene = litScene(context, name);
+    const std::vector<scenes::Camera> cameras = timedOrbit(scene, 4);
+    for (const Way& way : kTimed) {
+      pipeline::BaselineBench bench(scene, way.options(), settings, context.pool);
       const auto rows = pipeline::summarize(bench.run(cameras, 24, [](double) {}), bench.vertexCount());
       const auto row = [&](std::string_view wanted) -> const pipeline::BaselineRow& {
         return *std::ranges::find(rows, wanted, &pipeline::BaselineRow::name);
       };
       constexpr std::size_t kModern = 1, kGrouped = 2;
-      const auto median = [&](std::string_view of, std::size_t way) { return rounded(row(of).wall_ms[way].median); };
+      const auto median = [&](std::string_view of, std::size_t baseline) {
+        return rounded(row(of).wall_ms[baseline].median);
+      };
       const auto gain = [&](std::string_view of) { return fmt::format("{:.2f}", row(of).speedup[kModern].median); };
-      table.add({fmt::format("{}, {}", name, text), median("transform+clip", kModern),
+      table.add({fmt::format("{}, {}", name, way.name), median("transform+clip", kModern),
                  median("transform+clip", kGrouped), gain("transform+clip"), gain("geometry"), gain("raster"),
                  median("frame", kModern), median("frame", kGrouped), gain("frame")});
     }
@@ -142,10 +143,11 @@ std::string writePatchGroups(Context& context) {
   return "Both with an epsilon of 0.5 %, the distance metric and 16-bit parameters. *Axes*: planes across x, y and z "
          "through the whole mesh, as published; *patches*: patches are made of face clusters, and each has planes in "
          "a frame of its own. Vertices on borders between patches stay where they are, and planes that would take "
-         "fewer vertices of a patch than it pays to transform together are left out. Pictures are of 1280x720, the "
+         "fewer than 16 vertices of a patch are left out, as by --prefer memory. Pictures are of 1280x720, the "
          "worst of four views; *of drawing* is what differs from the same moved vertices drawn without groups.\n\n" +
          qualityTable(context, names) + picture(context) +
-         "Times, one thread, medians of 24 frames in turns from four sides; *ungrouped* is the original mesh with "
+         "Times, one thread, by default and, where it says so, with --prefer memory; medians of 24 frames in turns "
+         "from four sides; *ungrouped* is the original mesh with "
          "patches out of view or facing away left out.\n\n" +
          timeTable(context, timed);
 }

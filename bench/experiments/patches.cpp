@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bench/experiments/experiment.h"
-#include "bench/experiments/picture.h"
+#include "bench/experiments/lit_scene.h"
 #include "bench/experiments/rounds.h"
 #include "bench/experiments/table.h"
 #include "grouping/cluster_cuts.h"
@@ -19,9 +19,7 @@
 #include "pipeline/patch_culling.h"
 #include "pipeline/prepare.h"
 #include "pipeline/renderer.h"
-#include "scenes/builtin.h"
 #include "scenes/camera.h"
-#include "scenes/camera_path.h"
 
 namespace sheaf::experiments {
 namespace {
@@ -52,28 +50,14 @@ constexpr const char* kTreeVerdict =
 constexpr int kWidth = 1920, kHeight = 1080;
 constexpr double kAspect = static_cast<double>(kWidth) / kHeight;
 
-scenes::PathOptions pathOptions() {
-  scenes::PathOptions path;
-  path.azimuth_rad = radians(30.0);
-  path.elevation_rad = radians(20.0);
-  path.aspect = kAspect;
-  return path;
-}
-
-/// Positions and triangles, smooth normals, lit; backs are culled.
-scenes::Scene loadScene(Context& context, const std::string& name) {
-  mesh::Mesh mesh;
-  if (name.starts_with("builtin:")) {
-    scenes::Scene built = scenes::buildBuiltin(name.substr(8));
-    mesh.positions = std::move(built.meshes[0].positions);
-    mesh.triangles = std::move(built.meshes[0].triangles);
-  } else {
-    mesh = context.models.whole(name);
-  }
-  scenes::Material material = plainGrey();
-  material.double_sided = false;
-  scenes::Scene scene = sceneOf(std::move(mesh), material);
-  scenes::addDefaultLights(scene, scenes::fitCamera(scene, scenes::namedView("iso"), kAspect, radians(40.0), false));
+/// One mesh of positions and normals, grey; backs are culled.
+scenes::Scene bareScene(Context& context, const std::string& name) {
+  scenes::Scene scene = litScene(context, name);
+  mesh::Mesh& mesh = scene.meshes[0];
+  mesh.texcoords.clear();
+  mesh.colors.clear();
+  scene.materials = {scenes::Material{}};
+  scene.instances = {scenes::Instance{}};
   return scene;
 }
 
@@ -295,7 +279,7 @@ std::string writePatches(Context& context) {
               "one thread ms", "two threads, M faces/s"});
   Table frames({"mesh, way", "patches out of view %", "facing away %", "triangles left %", "geometry ms", "frame ms"});
   for (const std::string name : {"bunny", "dragon", "builtin:terrain?n=708"}) {
-    const scenes::Scene scene = loadScene(context, name);
+    const scenes::Scene scene = bareScene(context, name);
     std::vector<pipeline::PreparedScene> prepared;
     for (const Way& way : ways()) {
       PatchSet set = way.cut(scene.meshes[0], context.pool);
@@ -304,9 +288,9 @@ std::string writePatches(Context& context) {
     }
     std::vector<DrawWay> drawn_ways;
     for (const pipeline::PreparedScene& p : prepared) drawn_ways.push_back({&p});
-    addDrawnRows(name + ", orbit", drawn_ways, scenes::orbitPath(scene, 6, pathOptions()), 3, context.pool, frames);
+    addDrawnRows(name + ", orbit", drawn_ways, timedOrbit(scene, 6), 3, context.pool, frames);
     for (const double share_in_view : {0.1, 0.25}) {
-      const scenes::InsideView inside = scenes::insideView(scene, share_in_view, pathOptions());
+      const scenes::InsideView inside = scenes::insideView(scene, share_in_view, timedPath());
       addDrawnRows(fmt::format("{}, {} % in view", name, percent(inside.share_in_view, 0)), drawn_ways, {inside.camera},
                    15, context.pool, frames);
     }
@@ -329,10 +313,10 @@ std::string writePatchTree(Context& context) {
   Table stage({"mesh, view", "to clip: classic ms", "flat ms", "tree ms", "flat / tree", "geometry: classic ms",
                "flat ms", "tree ms", "flat / tree"});
   for (const std::string name : {"builtin:terrain?n=1448", "builtin:sphere?n=578", "dragon"}) {
-    const scenes::Scene scene = loadScene(context, name);
+    const scenes::Scene scene = bareScene(context, name);
     const pipeline::PreparedScene prepared = pipeline::prepareScene(scene, context.pool);
-    const scenes::InsideView inside = scenes::insideView(scene, 0.1, pathOptions());
-    const scenes::Camera whole = scenes::orbitPath(scene, 1, pathOptions()).front();
+    const scenes::InsideView inside = scenes::insideView(scene, 0.1, timedPath());
+    const scenes::Camera whole = timedOrbit(scene, 1).front();
     for (const auto& [view, camera] :
          {std::pair{std::string("whole"), whole}, {percent(inside.share_in_view, 0) + " % in view", inside.camera}}) {
       const CullTimes times = timeCulling(prepared, camera);

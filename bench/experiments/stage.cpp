@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "bench/experiments/experiment.h"
+#include "bench/experiments/lit_scene.h"
 #include "bench/experiments/rounds.h"
 #include "bench/experiments/table.h"
 #include "mesh/normals.h"
@@ -66,27 +67,6 @@ using pipeline::PreparedScene;
 
 constexpr int kWidth = 1920, kHeight = 1080;
 constexpr double kAspect = static_cast<double>(kWidth) / kHeight;
-
-scenes::Scene sceneOf(const mesh::Mesh& mesh) {
-  scenes::Scene scene;
-  scene.meshes.push_back(mesh);
-  mesh::makeSmoothNormals(scene.meshes[0], kPi);
-  scene.materials.emplace_back();
-  scene.instances.emplace_back();
-  return scene;
-}
-
-scenes::Scene litScene(scenes::Scene scene) {
-  const scenes::Camera camera = scenes::fitCamera(scene, scenes::namedView("iso"), kAspect, radians(40.0), false);
-  if (scene.lights.empty()) scenes::addDefaultLights(scene, camera);
-  return scene;
-}
-
-/// `name` of a model, with a number of vertices or whole (0), or builtin:...
-scenes::Scene loadAny(Context& context, const std::string& name, std::size_t vertices = 0) {
-  if (name.starts_with("builtin:")) return litScene(scenes::buildBuiltin(name.substr(8)));
-  return litScene(sceneOf(vertices == 0 ? context.models.whole(name) : context.models.lod(name, vertices)));
-}
 
 /// How vertices on planes are stored.
 struct Storage {
@@ -188,7 +168,7 @@ struct Load {
 // The snapped mesh without groups against the same with them, everything in view; a row for one thread and one for two.
 // scale  of milliseconds
 void addStageRows(Context& context, const Load& load, const Storage& storage, Turns turns, double scale, Table& table) {
-  const scenes::Scene scene = loadAny(context, load.name, load.vertices);
+  const scenes::Scene scene = litScene(context, load.name, load.vertices);
   const PreparedScene full = prepared(scene, Grouping::kPlanar, false, storage, context.pool);
   const PreparedScene grouped = prepared(scene, Grouping::kPlanar, true, storage, context.pool);
   const PreparedMesh& mesh = grouped.meshes[0];
@@ -296,7 +276,7 @@ std::string writeKernels(Context& context) {
   Table kernels({"terrain", "cached, to clip space", "cached, to the screen", "from memory, to clip space",
                  "from memory, to the screen", "memory only read"});
   {
-    const scenes::Scene scene = loadAny(context, "builtin:terrain?n=2048");
+    const scenes::Scene scene = litScene(context, "builtin:terrain?n=2048");
     addKernelRow("ungrouped, 12 bytes", prepared(scene, Grouping::kPlanar, false, kUsual, context.pool), kernels);
     addKernelRow("planar, 4 bytes", prepared(scene, Grouping::kPlanar, true, kUsual, context.pool), kernels);
     addKernelRow("planar, 8 bytes", prepared(scene, Grouping::kPlanar, true, kFloats, context.pool), kernels);
@@ -353,7 +333,7 @@ std::string writeVisible(Context& context) {
   Table table({"scene, triangles in view %", "stage", "classic ms", "modern ms", "grouped ms", "against classic",
                "against modern"});
   for (const std::string name : {"builtin:terrain?n=1024", "bunny", "dragon"}) {
-    const scenes::Scene scene = loadAny(context, name);
+    const scenes::Scene scene = litScene(context, name);
     pipeline::RenderSettings settings;
     settings.width = kWidth;
     settings.height = kHeight;
@@ -393,15 +373,11 @@ std::string writeFrames(Context& context) {
   for (const scenes::BuiltinInfo& info : scenes::builtinScenes()) names.push_back("builtin:" + info.name);
   for (const char* const model : {"cow", "bunny", "armadillo", "dragon", "jet"}) names.emplace_back(model);
   for (const std::string& name : names) {
-    const scenes::Scene scene = loadAny(context, name);
+    const scenes::Scene scene = litScene(context, name);
     const PreparedScene original = prepared(scene, Grouping::kNone, false, kUsual, context.pool);
     const PreparedScene snapped = prepared(scene, Grouping::kPlanar, false, kUsual, context.pool);
     const PreparedScene grouped = prepared(scene, Grouping::kPlanar, true, kUsual, context.pool);
-    scenes::PathOptions path;
-    path.azimuth_rad = radians(30.0);
-    path.elevation_rad = radians(20.0);
-    path.aspect = kAspect;
-    const std::vector<scenes::Camera> cameras = scenes::orbitPath(scene, 4, path);
+    const std::vector<scenes::Camera> cameras = timedOrbit(scene, 4);
     const std::vector<Frames> f = drawInTurns({&original, &snapped, &grouped}, cameras, {.count = 20}, context.pool);
     const auto gain = [&](std::size_t way) { return percent(f[way].frame.median / f[2].frame.median - 1.0); };
     table.add({name, spreadText(f[0].frame), spreadText(f[1].frame), spreadText(f[2].frame), gain(1), gain(0)});

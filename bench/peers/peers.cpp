@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/peers/core_distance.h"
 #include "bench/peers/peer_scene.h"
 #include "core/error.h"
 #include "core/task_pool.h"
@@ -201,6 +202,7 @@ nlohmann::json timeLlvmpipe(const fs::path& scene, const Options& options, const
 struct Row {
   std::vector<double> sheaf_ms;
   std::vector<double> llvmpipe_ms;
+  std::vector<double> core_distance_ns;
   std::vector<double> ratios;  // round by round: what disturbs one round disturbs both sides of it
   std::string renderer;
 };
@@ -219,6 +221,7 @@ void compare(const Case& which, const Options& options) {
     const nlohmann::json other = timeLlvmpipe(scene_file, options, llvmpipe_picture);
     row.renderer = other.at("renderer");
     row.llvmpipe_ms.push_back(other.at("median_ms"));
+    row.core_distance_ns.push_back(coreDistanceNs());
     row.sheaf_ms.push_back(sheaf.time(options.frames));
     row.ratios.push_back(row.llvmpipe_ms.back() / row.sheaf_ms.back());
   }
@@ -231,11 +234,12 @@ void compare(const Case& which, const Options& options) {
       raster::compareImages(sheaf.frame().color, raster::readImage(llvmpipe_picture));
   const pipeline::Counters& counters = sheaf.frame().counters;
   const auto [lowest, highest] = std::minmax_element(row.ratios.begin(), row.ratios.end());
-  fmt::print("{:30} {:9} {:8.1f} % {:9.2f} {:9.2f} {:7.1f}x {:6.1f}..{:.1f} {:9.3f}\n", which.name,
+  fmt::print("{:30} {:9} {:8.1f} % {:9.2f} {:9.2f} {:7.1f}x {:6.1f}..{:.1f} {:9.3f} {:9.0f}\n", which.name,
              counters.triangles_in,
              100.0 * static_cast<double>(counters.triangles_assembled - counters.triangles_outside) /
                  static_cast<double>(counters.triangles_in),
-             median(row.sheaf_ms), median(row.llvmpipe_ms), median(row.ratios), *lowest, *highest, difference.rms);
+             median(row.sheaf_ms), median(row.llvmpipe_ms), median(row.ratios), *lowest, *highest, difference.rms,
+             median(row.core_distance_ns));
   std::fflush(stdout);
 }
 
@@ -243,8 +247,10 @@ int run(const Options& options) {
   fs::create_directories(options.folder);
   fmt::print("{}x{}, {} threads each, median of {} rounds of {} frames in turns; pictures in {}\n", kWidth, kHeight,
              options.threads, options.rounds, options.frames, options.folder.string());
-  fmt::print("{:30} {:>9} {:>10} {:>9} {:>9} {:>8} {:>12} {:>9}\n", "scene", "triangles", "assembled", "sheaf ms",
-             "llvmpipe", "ratio", "of rounds", "RMS/255");
+  fmt::print(
+      "cores ns: a cache line from one core to another; where that is far, sheaf's two threads wait for each other\n");
+  fmt::print("{:30} {:>9} {:>10} {:>9} {:>9} {:>8} {:>12} {:>9} {:>9}\n", "scene", "triangles", "assembled", "sheaf ms",
+             "llvmpipe", "ratio", "of rounds", "RMS/255", "cores ns");
   for (const Case& which : cases())
     if (which.name.find(options.only) != std::string::npos) compare(which, options);
   return 0;

@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <glm/gtc/matrix_transform.hpp>
 #include <map>
 #include <set>
 #include <tuple>
@@ -15,24 +14,6 @@
 
 namespace sheaf::grouping {
 namespace {
-
-// z = bump(x, y) over the unit square, turned so that no axis is special.
-mesh::Mesh tiltedHills(std::uint32_t side, float height) {
-  const DMat3 turn(glm::rotate(DMat4(1.0), 0.7, glm::normalize(DVec3(1.0, 2.0, 3.0))));
-  mesh::Mesh mesh;
-  for (std::uint32_t y = 0; y < side; ++y)
-    for (std::uint32_t x = 0; x < side; ++x) {
-      const double u = double(x) / (side - 1), v = double(y) / (side - 1);
-      mesh.positions.push_back(Vec3(turn * DVec3(u, v, height * std::sin(9.0 * u) * std::cos(7.0 * v))));
-    }
-  for (std::uint32_t y = 0; y + 1 < side; ++y)
-    for (std::uint32_t x = 0; x + 1 < side; ++x) {
-      const std::uint32_t a = y * side + x;
-      mesh.triangles.push_back({a, a + 1, a + side});
-      mesh.triangles.push_back({a + 1, a + side + 1, a + side});
-    }
-  return mesh;
-}
 
 // By vertex, the patches it is in.
 std::vector<std::set<std::uint32_t>> patchesOf(const mesh::Mesh& mesh, const PatchSet& set) {

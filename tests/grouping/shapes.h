@@ -1,6 +1,9 @@
 // tests/grouping/shapes: meshes and point sets for the grouping tests.
 #pragma once
 
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
 #include <random>
 
 #include "mesh/mesh.h"
@@ -83,6 +86,31 @@ inline mesh::Mesh hills(std::mt19937& rng, std::uint32_t side, float height = 0.
       mesh.triangles.push_back({b, c, d});
     }
   return mesh;
+}
+
+/// A sheet of side x side vertices at place(u, v), u and v in [0, 1].
+template <typename Place>
+mesh::Mesh sheet(std::uint32_t side, const Place& place) {
+  mesh::Mesh mesh;
+  for (std::uint32_t y = 0; y < side; ++y)
+    for (std::uint32_t x = 0; x < side; ++x)
+      mesh.positions.push_back(place(static_cast<float>(x) / static_cast<float>(side - 1),
+                                     static_cast<float>(y) / static_cast<float>(side - 1)));
+  for (std::uint32_t y = 0; y + 1 < side; ++y)
+    for (std::uint32_t x = 0; x + 1 < side; ++x) {
+      const std::uint32_t a = y * side + x;
+      mesh.triangles.push_back({a, a + 1, a + side});
+      mesh.triangles.push_back({a + 1, a + side + 1, a + side});
+    }
+  return mesh;
+}
+
+/// Hills over the unit square, turned so that no axis is special.
+inline mesh::Mesh tiltedHills(std::uint32_t side, double height) {
+  const DMat3 turn(glm::rotate(DMat4(1.0), 0.7, glm::normalize(DVec3(1.0, 2.0, 3.0))));
+  return sheet(side, [&](double u, double v) {
+    return Vec3(turn * DVec3(u, v, height * std::sin(9.0 * u) * std::cos(7.0 * v)));
+  });
 }
 
 }  // namespace sheaf::grouping

@@ -15,20 +15,9 @@ namespace {
 
 // A bumpy closed-form surface z(x, y), away from the origin by `offset`.
 mesh::Mesh hills(std::uint32_t side, float offset = 0.0F) {
-  mesh::Mesh mesh;
-  for (std::uint32_t y = 0; y < side; ++y)
-    for (std::uint32_t x = 0; x < side; ++x) {
-      const float u = static_cast<float>(x) / static_cast<float>(side - 1);
-      const float v = static_cast<float>(y) / static_cast<float>(side - 1);
-      mesh.positions.push_back(Vec3(offset) + Vec3(u, v, 0.2F * std::sin(9.0F * u) * std::cos(7.0F * v)));
-    }
-  for (std::uint32_t y = 0; y + 1 < side; ++y)
-    for (std::uint32_t x = 0; x + 1 < side; ++x) {
-      const std::uint32_t a = y * side + x;
-      mesh.triangles.push_back({a, a + 1, a + side});
-      mesh.triangles.push_back({a + 1, a + side + 1, a + side});
-    }
-  return mesh;
+  return sheet(side, [=](float u, float v) {
+    return Vec3(offset) + Vec3(u, v, 0.2F * std::sin(9.0F * u) * std::cos(7.0F * v));
+  });
 }
 
 struct Built {

@@ -4,6 +4,8 @@
 
 #include <random>
 
+#include "grouping/patch_groups.h"
+#include "tests/grouping/shapes.h"
 #include "tests/pipeline/random_view.h"
 #include "tests/simd_targets.h"
 
@@ -135,6 +137,42 @@ TEST_CASE("pipeline/cull: the codes of a run hold for every member, on every SIM
   CHECK(rejected > 300);
   CHECK(accepted > 100);
   CHECK(behind > 10000);
+}
+
+TEST_CASE("pipeline/cull: the codes of a run in its patch's own frame hold for every member") {
+  TaskPool pool(1);
+  const mesh::Mesh mesh = grouping::tiltedHills(40, 0.2);
+  grouping::PatchSet set = grouping::splitIntoPatches(mesh, {}, pool);
+  const grouping::VertexGroups groups = grouping::groupInPatches(mesh, set, {.epsilon = 0.01}, pool);
+  const grouping::PlacedVertices placed = grouping::placeInFrames(mesh, groups, set, grouping::ParameterForm::kFloat);
+  const grouping::VertexRuns runs = grouping::buildVertexRuns(placed, 16, set, pool);
+  std::mt19937 rng(46);
+  int rejected = 0, accepted = 0;
+  for (int i = 0; i < 200; ++i) {
+    const RandomView random = randomView(rng);
+    const InstanceView view = viewInstance(random.instance, Box3(), random.view, false);
+    for (const grouping::PatchRuns& patch : runs.patches) {
+      const RunPlanes planes = runPlanes(clipFromPlanes(runs, patch, view.clip_from_object), random.view.viewport);
+      std::uint32_t parameter = patch.first_parameter;
+      for (std::uint32_t r = patch.first_run; r < patch.first_run + patch.run_count; ++r) {
+        const grouping::VertexRun& run = runs.runs[r];
+        if (run.kind != grouping::RunKind::kPlane) continue;
+        REQUIRE(patch.frame != grouping::kNoIndex);
+        const RunCodes codes = codeRun(run, planes);
+        rejected += (codes.must & kOutsideBits) != 0;
+        accepted += (codes.may & kClipBits) == 0;
+        for (std::uint32_t v = 0; v < run.vertex_count; ++v, ++parameter) {
+          const Vec2 st = runs.parameters[parameter];
+          const Vec4 clip = transformGrouped(runs, patch, run, {st.x, st.y}, view.clip_from_object);
+          const std::int32_t code = outcodeVertex(clip, random.view.viewport);
+          CHECK((codes.must & ~code) == 0);
+          CHECK((code & ~codes.may) == 0);
+        }
+      }
+    }
+  }
+  CHECK(rejected > 300);
+  CHECK(accepted > 100);
 }
 
 TEST_CASE("pipeline/cull: a run that lies in a plane of the view volume is neither accepted nor rejected") {

@@ -86,6 +86,7 @@ BenchReport measure(const BenchRequest& request, const scenes::Scene& scene, con
   report.geometry = pipeline::geometricError(bench.grouped());
   report.triangles = scene.triangleCount();
   report.vertices = bench.vertexCount();
+  report.drawn_by_groups = pipeline::shareDrawnByGroups(bench.grouped());
   report.original_bytes_per_vertex = pipeline::bytesPerVertex(bench.original());
   report.grouped_bytes_per_vertex = pipeline::bytesPerVertex(bench.grouped());
   report.warnings = bench.grouped().warnings;

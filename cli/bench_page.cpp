@@ -141,6 +141,7 @@ std::string benchPage(const BenchReport& report, TaskPool& pool) {
                   "and transforms and clips by groups: {}.",
                   withCommas(report.triangles), withCommas(report.vertices), groupingText(report.grouping)));
   page.cards({{fmt::format("{:.1f} %", 100.0 * report.geometry.eliminated()), "of the vertices eliminated"},
+              {fmt::format("{:.1f} %", 100.0 * report.drawn_by_groups), "of the patches' vertices drawn by groups"},
               {fmt::format("{:.2f}", report.grouped_bytes_per_vertex),
                fmt::format("bytes per vertex, {:.2f} without groups", report.original_bytes_per_vertex)}});
   for (const BenchSection& section : report.sections) addSection(section, report.vertices, pool, page);

@@ -50,6 +50,7 @@ std::string headText(const BenchReport& report) {
   text += line("", fmt::format("{:.2f} % of the vertices eliminated; {:.2f} bytes per vertex, {:.2f} without groups",
                                100.0 * report.geometry.eliminated(), report.grouped_bytes_per_vertex,
                                report.original_bytes_per_vertex));
+  text += line("", "drawn by groups: " + drawnByGroupsText(report.drawn_by_groups));
   return text;
 }
 
@@ -186,6 +187,7 @@ std::string benchJson(const BenchReport& report) {
                      {"triangles", report.triangles},
                      {"vertices", report.vertices},
                      {"eliminated_fraction", report.geometry.eliminated()},
+                     {"drawn_by_groups_fraction", report.drawn_by_groups},
                      {"search_ms", report.geometry.search_ms},
                      {"bytes_per_vertex",
                       {{"original", report.original_bytes_per_vertex}, {"grouped", report.grouped_bytes_per_vertex}}},

@@ -22,8 +22,9 @@ struct BenchReport {
   pipeline::RunContext context;
   pipeline::GroupingOptions grouping;
   pipeline::GeometricError geometry;
-  std::uint64_t triangles = 0;  ///< of all instances
-  std::uint64_t vertices = 0;   ///< of all instances and patches
+  std::uint64_t triangles = 0;   ///< of all instances
+  std::uint64_t vertices = 0;    ///< of all instances and patches
+  double drawn_by_groups = 0.0;  ///< pipeline::shareDrawnByGroups()
   double original_bytes_per_vertex = 0.0;
   double grouped_bytes_per_vertex = 0.0;
   std::vector<BenchSection> sections;

@@ -43,7 +43,7 @@ void writePly(const std::string& path, const Clustering& c) {
 
 void drawClusters(const ClusterRequest& request, const Clustering& clustering, scenes::Scene scene, TaskPool& pool) {
   Coloring coloring(clustering, request.cut.overlay, scene);
-  const scenes::Camera camera = coloring.chooseCamera(scene, request.view, request.aspect());
+  const scenes::Camera camera = chooseUnfittedCamera(scene, request.view, request.aspect());
   if (scene.lights.empty()) scenes::addDefaultLights(scene, camera);
   pipeline::RenderSettings settings;
   settings.width = request.size.width;

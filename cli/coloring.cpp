@@ -21,18 +21,6 @@ Coloring::Coloring(ColorBy by, const pipeline::Overlay& overlay, scenes::Scene& 
   pipeline::whitenSurfaces(scene);
 }
 
-scenes::Camera Coloring::chooseCamera(scenes::Scene& scene, const ViewRequest& view, double aspect) const {
-  if (overlay_.meshes.empty()) return chooseUnfittedCamera(scene, view, aspect);
-  // It is prepared apart from the scene, so that no grouping moves its bars.
-  scene.meshes.push_back(overlay_.meshes[0]);
-  scene.instances.push_back(overlay_.instances[0]);
-  scene.instances.back().mesh = static_cast<std::uint32_t>(scene.meshes.size() - 1);
-  const scenes::Camera camera = chooseUnfittedCamera(scene, view, aspect);
-  scene.meshes.pop_back();
-  scene.instances.pop_back();
-  return camera;
-}
-
 void Coloring::finish(pipeline::PreparedScene& prepared, Box3& bounds, TaskPool& pool) {
   const bool of_groups = by_ == ColorBy::kGroup;
   if (by_ != ColorBy::kCluster) {

@@ -19,9 +19,6 @@ class Coloring {
   /// Groups or patches. scene  loses its own colours
   Coloring(ColorBy by, const pipeline::Overlay& overlay, scenes::Scene& scene);
 
-  /// As chooseUnfittedCamera(), which is to see the overlay of clusters too. scene  is unchanged afterwards
-  scenes::Camera chooseCamera(scenes::Scene& scene, const ViewRequest& view, double aspect) const;
-
   /// Finds the colours of what was prepared from the scene and adds the overlay to it.
   /// bounds  of the scene; made to hold the overlay too
   void finish(pipeline::PreparedScene& prepared, Box3& bounds, TaskPool& pool);

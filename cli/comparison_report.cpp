@@ -77,7 +77,8 @@ std::string drawingText(const Comparison& comparison) {
   text += line("  worst", fmt::format("{}: {} pixels ({:.4f} %), by up to {}/255", worst->camera.name,
                                       d.differing_pixels, 100.0 * d.differingFraction(), d.max_error));
   const double allowed = pipeline::maxDrawingDifference(comparison.grouping.method);
-  return text + line("  allowed", allowed > 0.0 ? fmt::format("{:.4g} %: lines round otherwise", 100.0 * allowed)
+  return text + line("  allowed", allowed > 0.0 ? fmt::format("{:.4g} %: lines and planes of patches round otherwise",
+                                                              100.0 * allowed)
                                                 : std::string("none"));
 }
 
@@ -127,6 +128,7 @@ std::vector<std::pair<std::string, std::string>> geometryFacts(const Comparison&
   const double original = comparison.original_bytes_per_vertex;
   const double grouped = comparison.grouped_bytes_per_vertex;
   return {{"eliminated", fmt::format("{:.2f} % ({} of {} vertices)", 100.0 * g.eliminated(), g.grouped, g.vertices)},
+          {"drawn by groups", drawnByGroupsText(comparison.drawn_by_groups)},
           {"displacement",
            fmt::format("max {:.3f} %, mean {:.3f} %, RMS {:.3f} % of the extent", 100.0 * g.displacement_max,
                        100.0 * g.displacement_mean, 100.0 * g.displacement_rms)},
@@ -177,6 +179,7 @@ std::string comparisonJson(const ComparisonReport& report) {
       {"vertices", g.vertices},
       {"grouped_vertices", g.grouped},
       {"eliminated_fraction", g.eliminated()},
+      {"drawn_by_groups_fraction", c.drawn_by_groups},
       {"displacement_fraction",
        {{"max", g.displacement_max}, {"mean", g.displacement_mean}, {"rms", g.displacement_rms}}},
       {"normal_deviation_degrees",

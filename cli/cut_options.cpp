@@ -81,7 +81,10 @@ std::vector<CLI::Option*> addCutOptions(CLI::App& command, CutArguments& a) {
           "FIT,DIR,SHAPE[,BALANCE]"),
       add("--from", a.from, "Take the hierarchy from a file that sheaf cluster --hierarchy has\nsaved of the same mesh",
           "FILE.sheaf"),
-      add("--overlay", a.overlay, "Draw these too, as thin bars: boxes, planes or boxes,planes", "LIST")};
+      add("--overlay", a.overlay,
+          "Draw these too, as thin bars: boxes, planes or boxes,planes; of vertex\ngroups planes (or lines), of "
+          "patches boxes. The camera stays as it is",
+          "LIST")};
 }
 
 CutRequest understandCut(const CutArguments& arguments) {

@@ -57,8 +57,7 @@ pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments,
                                         {arguments.epsilon.has_value(), "--epsilon"},
                                         {arguments.parameters.has_value(), "--parameters"},
                                         {arguments.prefer.has_value(), "--prefer"}})
-      if (given)
-        throw Error(ErrorCode::kUsage, fmt::format("{} is for grouped drawing: add --grouping planar", option));
+      if (given) throw Error(ErrorCode::kUsage, fmt::format("{} is for grouped drawing: add --grouping", option));
     return options;
   }
   const MetricChoice choice = understandMetric(arguments.metric);
@@ -79,6 +78,11 @@ std::string groupingText(const pipeline::GroupingOptions& options) {
          fmt::format(", epsilon {:.4g} %, {} parameters", 100.0 * options.epsilon,
                      options.form == pipeline::ParameterForm::k16Bit ? "16-bit" : "float") +
          (options.prefer == pipeline::Prefer::kMemory ? ", to save memory" : "");
+}
+
+std::string drawnByGroupsText(double share) {
+  if (share > 0.0) return fmt::format("{:.1f} % of the patches' vertices", 100.0 * share);
+  return "no vertex, in full is faster here; --prefer memory draws by groups";
 }
 
 nlohmann::ordered_json groupingJson(const pipeline::GroupingOptions& options) {

@@ -66,6 +66,9 @@ pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments,
 /// `planar groups, distance metric, epsilon 0.5 %, 16-bit parameters`
 std::string groupingText(const pipeline::GroupingOptions& options);
 
+/// `63.1 % of the patches' vertices`, or why there are none.
+std::string drawnByGroupsText(double share);
+
 nlohmann::ordered_json groupingJson(const pipeline::GroupingOptions& options);
 
 }  // namespace sheaf::cli

@@ -15,6 +15,7 @@
 #include "cli/view.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "pipeline/comparison.h"
 #include "pipeline/renderer.h"
 #include "pipeline/timing_report.h"
 #include "raster/image_io.h"
@@ -97,8 +98,7 @@ int runRender(const RenderRequest& request) {
     coloring = beginColoring(request, scene, pool);  // of all preparation that which is done to the scene as a whole
   });
   if (!request.quiet) printWarnings(scene.warnings);
-  scenes::Camera camera = coloring ? coloring->chooseCamera(scene, request.view, request.aspect())
-                                   : chooseUnfittedCamera(scene, request.view, request.aspect());
+  scenes::Camera camera = chooseUnfittedCamera(scene, request.view, request.aspect());
   if (scene.lights.empty()) scenes::addDefaultLights(scene, camera);
 
   pipeline::RenderSettings settings;
@@ -119,6 +119,8 @@ int runRender(const RenderRequest& request) {
     if (coloring) coloring->finish(prepared, bounds, pool);
   });
   camera = scenes::fitClipPlanes(camera, bounds);
+  if (request.grouping.method != pipeline::Grouping::kNone && pipeline::shareDrawnByGroups(prepared) == 0.0)
+    prepared.warnings.push_back(fmt::format("{}: groups draw {}", request.input, drawnByGroupsText(0.0)));
   if (!request.quiet) printWarnings(prepared.warnings);
 
   pipeline::Renderer renderer(pool);

@@ -1,5 +1,6 @@
 # cmake -DSOURCE=... -DOUTPUT=... -P Revision.cmake: writes a header that says which revision is being built, at every
 # build, but touches it only when that changes.
+cmake_minimum_required(VERSION 3.25)
 set(revision "unknown")
 find_program(GIT git)
 if(GIT)

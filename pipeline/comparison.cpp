@@ -79,6 +79,17 @@ GeometricError geometricError(const PreparedScene& scene) {
   return error;
 }
 
+double shareDrawnByGroups(const PreparedScene& scene) {
+  std::uint64_t grouped = 0;
+  std::uint64_t vertices = 0;
+  for (const PreparedMesh& mesh : scene.meshes) {
+    for (const grouping::VertexRun& run : mesh.vertices.runs)
+      if (run.kind != grouping::RunKind::kFull) grouped += run.vertex_count;
+    vertices += mesh.vertex_count;
+  }
+  return vertices > 0 ? static_cast<double>(grouped) / static_cast<double>(vertices) : 0.0;
+}
+
 double bytesPerVertex(const PreparedScene& scene) {
   std::uint64_t bytes = 0;
   std::uint64_t vertices = 0;
@@ -102,6 +113,7 @@ Comparison compareGrouping(const scenes::Scene& scene, std::span<const scenes::C
   Comparison result;
   result.grouping = grouping;
   result.geometry = geometricError(forms.grouped);
+  result.drawn_by_groups = shareDrawnByGroups(forms.grouped);
   result.original_bytes_per_vertex = bytesPerVertex(forms.original);
   result.grouped_bytes_per_vertex = bytesPerVertex(forms.grouped);
   result.warnings = forms.grouped.warnings;

@@ -53,6 +53,9 @@ struct GeometricError {
 
 GeometricError geometricError(const PreparedScene& scene);
 
+/// Share of the patches' vertices that are drawn by groups; the others are stored in full, moved or not.
+double shareDrawnByGroups(const PreparedScene& scene);
+
 /// Bytes that the geometry stage reads of vertices, for each vertex of each patch; 0 without vertices.
 double bytesPerVertex(const PreparedScene& scene);
 
@@ -60,6 +63,7 @@ struct Comparison {
   GroupingOptions grouping;
   std::vector<ViewComparison> views;  ///< at least one
   GeometricError geometry;
+  double drawn_by_groups = 0.0;  ///< shareDrawnByGroups()
   double original_bytes_per_vertex = 0.0;
   double grouped_bytes_per_vertex = 0.0;
   std::size_t worst_view = 0;  ///< of greatest RMS error in `quality`, of equal ones the first

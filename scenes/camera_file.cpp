@@ -102,9 +102,10 @@ Json parse(const std::filesystem::path& path) {
 }  // namespace
 
 std::vector<Camera> readCameras(const std::filesystem::path& path) {
-  const Json json = parse(path);
+  Json json = parse(path);
+  if (json.is_object() && json.contains("cameras")) json = Json(json["cameras"]);
   if (!json.is_array() || json.empty())
-    throw Error(ErrorCode::kBadInput, fmt::format("{}: is not a JSON array of cameras", path.string()));
+    throw Error(ErrorCode::kBadInput, fmt::format("{}: has no array of cameras", path.string()));
   std::vector<Camera> cameras;
   for (std::size_t i = 0; i < json.size(); ++i) {
     cameras.push_back(CameraReader(json[i], fmt::format("{}: camera {}", path.string(), i)).read());

@@ -40,9 +40,10 @@ struct InsideView {
 /// a longer lens. share in (0, 1).
 InsideView insideView(const Scene& scene, double share, const PathOptions& options);
 
-/// A JSON array of objects, as `sheaf info --json` lists cameras: eye, target (arrays of three numbers), and optionally
-/// up, name, and one of vertical_fov_degrees (1 to 170) and orthographic_height. Throws Error(kBadInput) that names
-/// file and camera for anything else, an empty array included. Near and far stay 0.
+/// A JSON array of objects, or an object that has one called cameras, as `sheaf info --json` prints: eye, target
+/// (arrays of three numbers), and optionally up, name, and one of vertical_fov_degrees (1 to 170) and
+/// orthographic_height. Throws Error(kBadInput) that names file and camera for anything else, an empty array included.
+/// Near and far stay 0.
 std::vector<Camera> readCameras(const std::filesystem::path& path);
 
 }  // namespace sheaf::scenes

@@ -20,6 +20,8 @@
 namespace sheaf::cli {
 namespace {
 
+constexpr UsualGrouping kUsualGrouping{pipeline::Grouping::kPlanar, pipeline::Prefer::kSpeed};
+
 constexpr int kDefaultFrames = 24;
 constexpr int kMaxFrames = 100000;
 
@@ -61,7 +63,7 @@ struct BenchRequest : SceneRequest {
 BenchRequest understand(const BenchArguments& arguments) {
   BenchRequest request;
   understandScene(arguments, request);
-  request.grouping = understandGrouping(arguments.grouping, pipeline::Grouping::kPlanar);
+  request.grouping = understandGrouping(arguments.grouping, kUsualGrouping);
   const ViewRequest& view = request.view;
   if (arguments.views)
     request.views = understandViews(*arguments.views, view);
@@ -134,7 +136,7 @@ void addBenchCommand(CLI::App& app, Run& run) {
   command->add_flag("--json", a.json, "Everything as JSON, the times of each frame included");
   addReportOption(*command, a.report);
   addPictureOptions(*command, a);
-  addGroupingOptions(*command, a.grouping, pipeline::Grouping::kPlanar);
+  addGroupingOptions(*command, a.grouping, kUsualGrouping);
   addCameraOptions(*command, a);
   command
       ->add_option("--views", a.views,

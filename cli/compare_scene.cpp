@@ -18,6 +18,9 @@
 namespace sheaf::cli {
 namespace {
 
+// By groups wherever it can be: whether they are drawn right is the question, not how fast.
+constexpr UsualGrouping kUsualGrouping{pipeline::Grouping::kPlanar, pipeline::Prefer::kMemory};
+
 constexpr int kDefaultViews = 8;
 
 void checkBeforehand(const SceneCompareRequest& request) {
@@ -51,7 +54,7 @@ std::vector<std::string> beyondInAnyView(const Limits& limits, const pipeline::C
 void addSceneCompareOptions(CLI::App& command, SceneCompareArguments& a) {
   addReportOption(command, a.report);
   addPictureOptions(command, a);
-  addGroupingOptions(command, a.grouping, pipeline::Grouping::kPlanar);
+  addGroupingOptions(command, a.grouping, kUsualGrouping);
   addCameraOptions(command, a);
   command
       .add_option("--views", a.views,
@@ -65,7 +68,7 @@ void addSceneCompareOptions(CLI::App& command, SceneCompareArguments& a) {
 
 void understandSceneCompare(const SceneCompareArguments& arguments, SceneCompareRequest& request) {
   understandScene(arguments, request);
-  request.grouping = understandGrouping(arguments.grouping, pipeline::Grouping::kPlanar);
+  request.grouping = understandGrouping(arguments.grouping, kUsualGrouping);
   request.report = understandReport(arguments.report);
   if (arguments.views) request.views = understandViews(*arguments.views, request.view);
 }

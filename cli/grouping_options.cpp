@@ -26,11 +26,11 @@ MetricChoice understandMetric(const MetricArguments& arguments) {
   return choice;
 }
 
-void addGroupingOptions(CLI::App& command, GroupingArguments& a, pipeline::Grouping usual) {
+void addGroupingOptions(CLI::App& command, GroupingArguments& a, const UsualGrouping& usual) {
   const auto add = [&](const char* name, auto& value, const std::string& meaning, const char* type) {
     command.add_option(name, value, meaning)->type_name(type)->group("Groups");
   };
-  const bool may_be_none = usual == pipeline::Grouping::kNone;
+  const bool may_be_none = usual.method == pipeline::Grouping::kNone;
   add("--grouping", a.grouping,
       may_be_none ? "Move vertices onto common lines or planes, by up to epsilon, and\ntransform them together: lossy "
                     "(default none)"
@@ -41,16 +41,17 @@ void addGroupingOptions(CLI::App& command, GroupingArguments& a, pipeline::Group
   add("--epsilon", a.epsilon, "0.5% or 0.005 of the longest edge of each mesh's box (default 0.5%)", "E");
   add("--parameters", a.parameters, "How parameters on lines and planes are stored (default 16bit)", "16bit|float");
   add("--prefer", a.prefer,
-      "Draw by planes where that is faster (of planar groups: in meshes of\n900,000 vertices and more), or wherever it "
-      "saves memory\n(default speed)",
+      fmt::format("Draw by planes where that is faster (of planar groups: in meshes of\n900,000 vertices and more), or "
+                  "wherever it saves memory\n(default {})",
+                  nameOf(usual.prefer, kPreferNames)),
       "speed|memory");
 }
 
-pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments, pipeline::Grouping usual) {
+pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments, const UsualGrouping& usual) {
   pipeline::GroupingOptions options;
-  options.method = arguments.grouping ? choose("--grouping", *arguments.grouping, kGroupingNames) : usual;
+  options.method = arguments.grouping ? choose("--grouping", *arguments.grouping, kGroupingNames) : usual.method;
   if (options.method == pipeline::Grouping::kNone) {
-    if (usual != pipeline::Grouping::kNone)
+    if (usual.method != pipeline::Grouping::kNone)
       throw Error(ErrorCode::kUsage, "--grouping none: without groups there is nothing to compare");
     for (const auto& [given, option] : {std::pair{arguments.metric.metric.has_value(), "--metric"},
                                         {arguments.metric.limit.has_value(), "--limit"},
@@ -65,7 +66,7 @@ pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments,
   options.limit = choice.limit;
   options.epsilon = parseFraction("--epsilon", arguments.epsilon.value_or("0.5%"));
   options.form = choose("--parameters", arguments.parameters.value_or("16bit"), kParameterNames);
-  options.prefer = choose("--prefer", arguments.prefer.value_or("speed"), kPreferNames);
+  options.prefer = arguments.prefer ? choose("--prefer", *arguments.prefer, kPreferNames) : usual.prefer;
   return options;
 }
 

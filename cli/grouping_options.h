@@ -56,12 +56,17 @@ struct GroupingArguments {
   std::optional<std::string> prefer;
 };
 
-/// usual  the method when none is asked for
-void addGroupingOptions(CLI::App& command, GroupingArguments& arguments, pipeline::Grouping usual);
+/// What counts where nothing is asked for.
+struct UsualGrouping {
+  pipeline::Grouping method = pipeline::Grouping::kNone;
+  pipeline::Prefer prefer = pipeline::Prefer::kSpeed;
+};
+
+void addGroupingOptions(CLI::App& command, GroupingArguments& arguments, const UsualGrouping& usual);
 
 /// By distance, epsilon 0.5 %, unless asked otherwise. Throws Error(kUsage) that names the option; also for kNone where
 /// it is not `usual`: without groups there is nothing to compare.
-pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments, pipeline::Grouping usual);
+pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments, const UsualGrouping& usual);
 
 /// `planar groups, distance metric, epsilon 0.5 %, 16-bit parameters`
 std::string groupingText(const pipeline::GroupingOptions& options);

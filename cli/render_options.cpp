@@ -146,7 +146,7 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
   addOutputOptions(command, a);
   addPictureOptions(command, a);
   addCameraOptions(command, a);
-  addGroupingOptions(command, a.grouping, pipeline::Grouping::kNone);
+  addGroupingOptions(command, a.grouping, {});
   addColorOptions(command, a);
   addMeasuringOptions(command, a);
   command.footer(std::string(kFooter) + kExitCodes);
@@ -158,7 +158,7 @@ RenderRequest understand(const RenderArguments& arguments) {
   understandMeasuring(arguments, request);
   understandOutput(arguments, request);
   if (arguments.no_patch_culling) request.culling = pipeline::Culling::kNone;
-  request.grouping = understandGrouping(arguments.grouping, pipeline::Grouping::kNone);
+  request.grouping = understandGrouping(arguments.grouping, {});
   understandColors(arguments, request);
   return request;
 }

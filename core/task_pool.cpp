@@ -53,8 +53,9 @@ class alignas(64) Share {
 }  // namespace
 
 struct TaskPool::Arena {
-  explicit Arena(int threads) : arena(threads) {}
+  explicit Arena(int threads) : arena(threads), shares(static_cast<std::size_t>(threads)) {}
   tbb::task_arena arena;
+  std::vector<Share> shares;  // of the call that is under way
 };
 
 TaskPool::TaskPool(int threads)
@@ -71,7 +72,7 @@ void TaskPool::parallelFor(int count, const std::function<void(int, int)>& body)
     for (int piece = 0; piece < count; ++piece) body(piece, 0);
     return;
   }
-  std::vector<Share> shares(static_cast<std::size_t>(workers));
+  std::vector<Share>& shares = arena_->shares;
   const auto beginOf = [&](int worker) { return static_cast<int>(std::int64_t{count} * worker / workers); };
   for (int w = 0; w < workers; ++w) shares[static_cast<std::size_t>(w)].set(beginOf(w), beginOf(w + 1));
   // Acquire and release here say what oneTBB sees to anyway, in a way that ThreadSanitizer can see too: what was

@@ -14,6 +14,7 @@
 #include "grouping/dual_graph.h"
 #include "grouping/patch_cut.h"
 #include "grouping/patch_split.h"
+#include "mesh/weld.h"
 
 namespace sheaf::grouping {
 namespace {
@@ -224,11 +225,12 @@ void append(const PatchCut& part, PatchCut& cut) {
 
 }  // namespace
 
-PatchSet clusterPatches(const Mesh& mesh, const FaceClusters& clusters, const PatchLimits& limits, TaskPool& pool) {
-  assert(clusters.faceCount() == mesh.triangleCount());
+PatchSet clusterPatches(const Mesh& mesh, const Mesh& surface, const FaceClusters& clusters, const PatchLimits& limits,
+                        TaskPool& pool) {
+  assert(clusters.faceCount() == mesh.triangleCount() && surface.triangleCount() == mesh.triangleCount());
   std::vector<std::uint32_t> crumbs;
   Pieces pieces = cutIntoPieces(mesh, clusters, limits, crumbs);
-  findNeighbours(mesh, pieces);
+  findNeighbours(surface, pieces);
   PatchCut cut = PatchGrower(pieces, limits).grow();
   pieces = {};
   append(splitByPlace(mesh, std::move(crumbs), limits, pool), cut);
@@ -238,7 +240,8 @@ PatchSet clusterPatches(const Mesh& mesh, const FaceClusters& clusters, const Pa
 PatchSet clusterPatches(const Mesh& mesh, const PatchLimits& limits, TaskPool& pool) {
   ClusterOptions options;
   options.min_shape_faces = std::numeric_limits<std::uint32_t>::max();  // patches get bounds of their own
-  return clusterPatches(mesh, clusterFaces(mesh, options, pool), limits, pool);
+  const Mesh surface = mesh::surfaceOf(mesh);
+  return clusterPatches(mesh, surface, clusterFaces(surface, options, pool), limits, pool);
 }
 
 }  // namespace sheaf::grouping

@@ -16,22 +16,14 @@
 namespace sheaf::grouping {
 namespace {
 
-constexpr std::uint32_t kManyPatches = kNoIndex - 1;
+constexpr std::uint32_t kSeveral = kNoIndex - 1;
 
-std::span<const std::uint32_t> verticesOf(const Patch& patch, const PatchSet& set) {
-  return std::span(set.vertex_source).subspan(patch.first_vertex, patch.vertex_count);
-}
-
-std::span<const std::uint32_t> trianglesOf(const Patch& patch, const PatchSet& set) {
-  return std::span(set.triangle_source).subspan(patch.first_triangle, patch.triangle_count);
-}
-
-// The patch that a place or a vertex belongs to; kManyPatches once there is a second one.
-void claim(std::uint32_t& owner, std::uint32_t patch) {
+// The patch that has a vertex, or the vertex at a place; kSeveral once there is a second one.
+void claim(std::uint32_t& owner, std::uint32_t by) {
   if (owner == kNoIndex)
-    owner = patch;
-  else if (owner != patch)
-    owner = kManyPatches;
+    owner = by;
+  else if (owner != by)
+    owner = kSeveral;
 }
 
 struct PositionHash {
@@ -42,20 +34,19 @@ struct PositionHash {
   }
 };
 
-// #V, whether a vertex may move: it is inside one patch, and no vertex of another patch lies where it does, for there
-// are seams of attributes. With `alone` no other vertex at all: by their quadrics they would not move alike.
-std::vector<bool> innerVertices(const mesh::Mesh& mesh, const PatchSet& set, bool alone) {
+// #V, whether a vertex may move: it is inside one patch, and no other vertex lies where it does. Those stand at seams
+// of attributes: one might be retained and the other go to the grid of a plane.
+std::vector<bool> innerVertices(const mesh::Mesh& mesh, const PatchSet& set) {
   std::vector<std::uint32_t> patch_of(mesh.vertexCount(), kNoIndex);
   for (std::uint32_t p = 0; p < set.patches.size(); ++p)
-    for (const std::uint32_t v : verticesOf(set.patches[p], set)) claim(patch_of[v], p);
-  const auto ownerOf = [&](std::uint32_t v) { return alone ? v : patch_of[v]; };
-  std::unordered_map<Vec3, std::uint32_t, PositionHash> owner_at;
-  owner_at.reserve(mesh.vertexCount());
+    for (const std::uint32_t v : set.verticesOf(set.patches[p])) claim(patch_of[v], p);
+  std::unordered_map<Vec3, std::uint32_t, PositionHash> vertex_at;
+  vertex_at.reserve(mesh.vertexCount());
   for (std::uint32_t v = 0; v < patch_of.size(); ++v)
-    if (patch_of[v] != kNoIndex) claim(owner_at.try_emplace(mesh.positions[v], kNoIndex).first->second, ownerOf(v));
+    if (patch_of[v] != kNoIndex) claim(vertex_at.try_emplace(mesh.positions[v], kNoIndex).first->second, v);
   std::vector<bool> inner(mesh.vertexCount(), false);
   for (std::uint32_t v = 0; v < patch_of.size(); ++v)
-    inner[v] = patch_of[v] < kManyPatches && owner_at.at(mesh.positions[v]) == ownerOf(v);
+    inner[v] = patch_of[v] < kSeveral && vertex_at.at(mesh.positions[v]) == v;
   return inner;
 }
 
@@ -161,7 +152,7 @@ Findings searchPatches(const mesh::Mesh& mesh, const PatchSet& set, double eps, 
                        std::uint32_t min_members, std::vector<PlaneFrame>& planes, TaskPool& pool) {
   constexpr std::size_t kPatchesPerPiece = 16;
   const std::size_t count = set.patches.size();
-  const std::vector<bool> inner = innerVertices(mesh, set, !ellipsoids.empty());
+  const std::vector<bool> inner = innerVertices(mesh, set);
   std::vector<std::vector<Findings::Seed>> seeds(count);
   Findings findings;
   findings.owner.assign(mesh.vertexCount(), kNoIndex);
@@ -171,14 +162,14 @@ Findings searchPatches(const mesh::Mesh& mesh, const PatchSet& set, double eps, 
     const std::size_t begin = static_cast<std::size_t>(piece) * kPatchesPerPiece;
     for (std::size_t p = begin; p < std::min(count, begin + kPatchesPerPiece); ++p) {
       const Patch& patch = set.patches[p];
-      const ClusterShape shape = shapeOfFaces(mesh, trianglesOf(patch, set));
+      const ClusterShape shape = shapeOfFaces(mesh, set.trianglesOf(patch));
       planes[p] = shape.frame;
-      seeds[p] = search.search(verticesOf(patch, set), shape, static_cast<std::uint32_t>(p), findings.owner);
+      seeds[p] = search.search(set.verticesOf(patch), shape, static_cast<std::uint32_t>(p), findings.owner);
     }
   });
   for (std::size_t p = 0; p < count; ++p) {
     const auto first = static_cast<std::uint32_t>(findings.seeds.size());
-    for (const std::uint32_t v : verticesOf(set.patches[p], set))
+    for (const std::uint32_t v : set.verticesOf(set.patches[p]))
       if (inner[v] && findings.owner[v] != kNoIndex) findings.owner[v] += first;
     findings.seeds.insert(findings.seeds.end(), seeds[p].begin(), seeds[p].end());
   }

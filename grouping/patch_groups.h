@@ -5,8 +5,8 @@
 //          faces, fitted by least squares ([HFC] p. 17). A group's plane goes through a retained vertex of its patch
 //   Method patch by patch and greedy: the plane through a retained vertex that takes most of the vertices still free,
 //          of equal ones the one nearest to the fitted plane, until no plane takes enough
-//   Keeps  vertices that lie in more than one patch, or where a vertex of another patch lies, stay where they are, so
-//          that patches fit together to the bit
+//   Keeps  vertices that are in more than one patch, or where another vertex lies, stay where they are, so that patches
+//          fit together to the bit
 #pragma once
 
 #include <cstdint>

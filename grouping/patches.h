@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/math.h"
@@ -43,6 +44,14 @@ struct PatchSet {
   std::vector<std::uint32_t> vertex_source;  ///< mesh vertex of each slot; padding repeats the run's last vertex
   std::array<std::vector<std::uint8_t>, 3> corners;  ///< local vertex of each corner; padding is (0, 0, 0)
   std::vector<std::uint32_t> triangle_source;        ///< mesh triangle of each slot; padding is kNoIndex
+
+  /// Of the mesh, without padding.
+  std::span<const std::uint32_t> verticesOf(const Patch& patch) const {
+    return std::span(vertex_source).subspan(patch.first_vertex, patch.vertex_count);
+  }
+  std::span<const std::uint32_t> trianglesOf(const Patch& patch) const {
+    return std::span(triangle_source).subspan(patch.first_triangle, patch.triangle_count);
+  }
 };
 
 struct PatchLimits {

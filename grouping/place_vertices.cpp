@@ -151,10 +151,6 @@ class PlaneChooser {
   std::array<std::uint32_t, 3> first_{};
 };
 
-std::span<const std::uint32_t> verticesOf(const Patch& patch, const PatchSet& set) {
-  return std::span(set.vertex_source).subspan(patch.first_vertex, patch.vertex_count);
-}
-
 void placeOnGroups(const VertexGroups& groups, PlacedVertices& placed) {
   for (const VertexGroup& g : groups.groups) {
     VertexPlace place;
@@ -205,7 +201,7 @@ float gridStep(const PlacedVertices& placed, const PatchSet& set) {
   double size = 0.0, farthest = 0.0;
   for (const Patch& patch : set.patches) {
     Box3 box;
-    for (const std::uint32_t v : verticesOf(patch, set))
+    for (const std::uint32_t v : set.verticesOf(patch))
       if (placed.places[v].kind == RunKind::kPlane) box.extend(placed.coordinatesOf(v));
     if (box.empty()) continue;
     size = std::max(size, double{box.longestEdge()});
@@ -244,7 +240,7 @@ PlacedVertices placeGrouped(const mesh::Mesh& mesh, const VertexGroups& groups, 
   placed.form = form;
   if (groups.kind == GroupKind::kPlane && groups.metric == Metric::kDistance) {
     PlaneChooser chooser(mesh, groups, placed);
-    for (const Patch& patch : patches.patches) chooser.choose(verticesOf(patch, patches));
+    for (const Patch& patch : patches.patches) chooser.choose(patches.verticesOf(patch));
   } else {
     placeOnGroups(groups, placed);
   }

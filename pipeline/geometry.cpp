@@ -43,6 +43,7 @@ void prefetch(const auto* begin, std::size_t count) {
 }
 
 void prefetchVertices(const PatchVertices& next) {
+  if (next.of_mesh == nullptr) return;
   const grouping::VertexRuns& vertices = *next.of_mesh;
   const grouping::PatchRuns& at = vertices.patches[next.patch];
   const bool is_last = next.patch + 1 == vertices.patches.size();

@@ -31,9 +31,9 @@ enum class Grouping : std::uint8_t {
 
 using grouping::ParameterForm;
 
-/// What planes are used for: they are one or the other on meshes that fit the caches.
+/// Where planes are used. On meshes that fit the caches drawing in full is faster, by planes takes less memory.
 enum class Prefer : std::uint8_t {
-  kSpeed,   ///< large meshes by planes, where that is not slower; smaller ones in full, as without groups
+  kSpeed,   ///< kPlanar: in large meshes only, smaller ones are drawn in full; long runs of vertices only
   kMemory,  ///< wherever it saves memory
 };
 
@@ -45,7 +45,9 @@ struct GroupingOptions {
   grouping::Limit limit = grouping::Limit::kSafe;  ///< of the quadric metric
   double epsilon = 0.005;                          ///< fraction of each mesh's extent
   ParameterForm form = ParameterForm::k16Bit;      ///< 16 bits move a vertex by up to 2^-17 of the largest patch's size
-  Prefer prefer = Prefer::kSpeed;                  ///< how planes are stored; changes no picture
+  /// Of kPlanar and kLinear only how vertices are stored. kCluster moves no vertex that is then drawn in full: there
+  /// kMemory moves more of them.
+  Prefer prefer = Prefer::kSpeed;
   /// false: the snapped mesh drawn ungrouped: the same vertices at the same places, each stored and transformed in
   /// full. What grouped drawing is held against.
   bool use_groups = true;

@@ -1,8 +1,7 @@
 // pipeline/triangle_colors: pictures whose colours say which part of a surface a triangle belongs to: a face cluster, a
 // vertex group, a patch.
 //   Method The scene is drawn white (whitenSurfaces), with ids. Then every pixel takes the colour of the triangle that
-//   is
-//          seen there (colorPixels). So colours end exactly where triangles do, light and shade stay, and what was
+//          is seen there (colorPixels). So colours end exactly where triangles do, light and shade stay, and what was
 //          drawn is what would have been drawn without them: no vertex is there twice.
 //   Keeps  neighbours in different colours, as grouping::colorParts() does
 #pragma once

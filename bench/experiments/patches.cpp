@@ -83,7 +83,7 @@ PatchSet cutToWholeClusters(const mesh::Mesh& mesh, TaskPool& pool) {
 }
 
 PatchSet cutToClusterPatches(const mesh::Mesh& mesh, TaskPool& pool) {
-  return grouping::clusterPatches(mesh, grouping::clusterFaces(mesh, {}, pool), {}, pool);
+  return grouping::clusterPatches(mesh, mesh, grouping::clusterFaces(mesh, {}, pool), {}, pool);
 }
 
 /// Numbers of triangles in the result are the meshlets' own.

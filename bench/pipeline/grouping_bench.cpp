@@ -88,6 +88,7 @@ void drawFrame(benchmark::State& state, const Load& load, const Way& way, double
   options.method = way.method;
   options.use_groups = way.use_groups;
   options.form = way.form;
+  options.prefer = Prefer::kMemory;  // or smaller meshes were drawn in full
   const PreparedScene prepared = prepareScene(std::move(scene), pool, options);
   constexpr std::array kStages = {Stage::kCull, Stage::kTransform, Stage::kClip, Stage::kSetupBin};
   const Frame frame = repeatFrame(state, prepared, camera, way.culling, kStages, pool);

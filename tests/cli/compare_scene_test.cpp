@@ -41,6 +41,10 @@ TEST_CASE("cli/compare_scene: grouping is lossy, so without a limit what counts 
   CHECK(json["views"][0]["quality"]["equal"] == false);
   CHECK(json["views"][0]["quality"]["silhouette_shift"]["max_px"].get<double>() > 0.0);
   CHECK(json["eliminated_fraction"].get<double>() > 0.5);
+  CHECK(json["drawn_by_groups_fraction"].get<double>() > 0.3);
+  const Json in_full = compareJson(folder, {"--prefer", "speed"});
+  CHECK(in_full["drawn_by_groups_fraction"] == 0.0);
+  CHECK(in_full["views"][0]["quality"] == json["views"][0]["quality"]);
   CHECK(json["displacement_fraction"]["max"].get<double>() <= 0.00501);
   CHECK(json["bytes_per_vertex"]["original"].get<double>() >= 12.0);
 }

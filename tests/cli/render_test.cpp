@@ -290,7 +290,7 @@ TEST_CASE("cli/render: colours that cannot be shown are refused: one line, exit 
   }
 }
 
-TEST_CASE("cli/render: a coloured EXR is linear and has its ids") {
+TEST_CASE("cli/render: a coloured EXR shows what the PNG shows") {
   setenv("SHEAF_MODULE_DIR", SHEAF_TEST_MODULE_DIR, 1);  // for this program, which reads the picture
   const TempFolder folder;
   const Words words = {"render", "builtin:sphere?n=8", "--size", "64x48", "--color-by", "patch", "-o",

@@ -18,7 +18,7 @@ using mesh::Triangle;
 
 PatchSet cut(const Mesh& m, const PatchLimits& limits, int threads) {
   TaskPool pool(threads);
-  return clusterPatches(m, clusterFaces(m, {}, pool), limits, pool);
+  return clusterPatches(m, m, clusterFaces(m, {}, pool), limits, pool);
 }
 
 PatchSet checkedPatches(const Mesh& m, const PatchLimits& limits = {}) {
@@ -78,7 +78,7 @@ TEST_CASE("grouping/cluster_patches: fewer than the clusters within the same lim
   TaskPool pool(1);
   const FaceClusters clusters = clusterFaces(m, {}, pool);
   const ClusterCut plain = cutBySize(m, clusters, {.max_faces = 512, .max_vertices = 256});
-  CHECK(static_cast<double>(clusterPatches(m, clusters, {}, pool).patches.size()) <
+  CHECK(static_cast<double>(clusterPatches(m, m, clusters, {}, pool).patches.size()) <
         0.9 * static_cast<double>(plain.size()));
 }
 
@@ -144,9 +144,18 @@ TEST_CASE("grouping/cluster_patches: clusters of the welded mesh reach over its 
   for (Triangle& t : joined.triangles)
     for (std::uint32_t& v : t) v = at.emplace(std::pair(m.positions[v].x, m.positions[v].y), v).first->second;
   TaskPool pool(1);
-  const PatchSet set = clusterPatches(m, clusterFaces(joined, {}, pool), {}, pool);
+  const PatchSet set = clusterPatches(m, joined, clusterFaces(joined, {}, pool), {}, pool);
   checkRuns(set, {});
   checkPartition(set, m);
+  const auto reachesOver = [half_faces = static_cast<std::uint32_t>(half.triangleCount())](const PatchSet& patches) {
+    return std::any_of(patches.patches.begin(), patches.patches.end(), [&](const Patch& patch) {
+      const auto faces = patches.trianglesOf(patch);
+      const auto left = std::count_if(faces.begin(), faces.end(), [&](std::uint32_t f) { return f < half_faces; });
+      return left > 0 && left < static_cast<std::ptrdiff_t>(faces.size());
+    });
+  };
+  CHECK(reachesOver(set));
+  CHECK(reachesOver(clusterPatches(m, {}, pool)));
 }
 
 TEST_CASE("grouping/cluster_patches: non-manifold meshes, and ten thousand triangles around one vertex") {

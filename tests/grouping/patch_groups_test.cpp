@@ -108,6 +108,21 @@ TEST_CASE("grouping/patch_groups: vertices at a seam between patches stay, even 
   }
 }
 
+TEST_CASE("grouping/patch_groups: vertices at a seam inside a patch stay together when they are placed") {
+  TaskPool pool(1);
+  mesh::Mesh mesh = tiltedHills(12, 0.02);
+  const auto side = static_cast<std::uint32_t>(mesh.vertexCount());
+  mesh.positions.insert(mesh.positions.end(), mesh.positions.begin(), mesh.positions.end());
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3)
+    for (std::uint32_t& v : mesh.triangles[t]) v += side;
+  const PatchSet set = splitIntoPatches(mesh, {.max_vertices = 256, .max_triangles = 512}, pool);
+  const VertexGroups groups = groupInPatches(mesh, set, {.epsilon = 0.05}, pool);
+  const PlacedVertices placed = placeInFrames(mesh, groups, set, ParameterForm::k16Bit);
+  for (std::uint32_t v = 0; v < side; ++v)
+    if (groups.state[v] != VertexState::kUnused && groups.state[v + side] != VertexState::kUnused)
+      CHECK(placed.positions[v] == placed.positions[v + side]);
+}
+
 TEST_CASE("grouping/patch_groups: a flat patch is one plane") {
   TaskPool pool(1);
   mesh::Mesh mesh = tiltedHills(12, 0.0F);

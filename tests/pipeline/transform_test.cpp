@@ -115,7 +115,7 @@ TEST_CASE("pipeline/transform: planes and lines equal the reference on every SIM
   std::uniform_int_distribution<int> word(0, 65535);
   for (const grouping::ParameterForm form : {grouping::ParameterForm::k16Bit, grouping::ParameterForm::kFloat})
     for (const grouping::RunKind kind : {grouping::RunKind::kPlane, grouping::RunKind::kLine})
-      for (const std::uint32_t count : {1U, 7U, 16U, 33U, 256U}) {
+      for (const std::uint32_t count : {1U, 7U, 16U, 33U, 256U, 29U, 200U}) {  // each axis, the last in a frame
         CAPTURE(count);
         OneRun one(count);
         grouping::VertexRuns& runs = one.vertices;
@@ -125,6 +125,10 @@ TEST_CASE("pipeline/transform: planes and lines equal the reference on every SIM
         one.run().kind = kind;
         one.run().axis = static_cast<std::uint8_t>(count % 3);
         one.run().plane = 0.7F;
+        if (kind == grouping::RunKind::kPlane && count == 200) {
+          one.patch().frame = 0;
+          runs.frames = {{{0.4F, -2.0F, 7.0F}, {{0.6F, 0.0F, 0.8F}, {0.8F, 0.0F, -0.6F}, {0.0F, 1.0F, 0.0F}}}};
+        }
         if (kind == grouping::RunKind::kLine) {
           one.run().line = 0;
           runs.lines = {{Vec3(0.1F, 0.2F, 0.3F), Vec3(0.9F, -0.4F, 0.2F), -0.3F, 1e-5F}};

@@ -189,7 +189,7 @@ TEST_CASE("pipeline/grouped: by planes of patches, what differs from the ungroup
         const Frame grouped = draw(by_groups, camera, pool, cull);
         const Frame expected = draw(in_full, camera, pool, cull);
         CHECK(expected.counters.vertices_grouped == 0);
-        CHECK(raster::compareImages(grouped.color, expected.color).differing_pixels * 100 <= kWidth * kHeight);
+        CHECK(raster::compareImages(grouped.color, expected.color).differing_pixels <= 10);  // 4 at most were seen
         grouped_vertices += grouped.counters.vertices_grouped;
         outside += grouped.counters.groups_outside;
         inside += grouped.counters.groups_inside;
@@ -219,7 +219,8 @@ TEST_CASE("pipeline/grouped: planes of patches, far from the mesh's origin, mirr
     const Frame grouped = draw(prepare(scene, camera, options, pool), camera, pool);
     CHECK(grouped.counters.vertices_grouped > 0);
     const Frame expected = draw(prepare(scene, camera, ungrouped(options), pool), camera, pool);
-    CHECK(raster::compareImages(grouped.color, expected.color).differing_pixels * 50 <= kWidth * kHeight);
+    // A thousand units away, floats are a thousand times as coarse as the mesh: 14 to 64 were seen.
+    CHECK(raster::compareImages(grouped.color, expected.color).differing_pixels <= 100);
   }
 }
 

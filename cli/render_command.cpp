@@ -92,11 +92,7 @@ int runRender(const RenderRequest& request) {
   TaskPool pool(request.threads);
 
   scenes::Scene scene;
-  std::optional<Coloring> coloring;
-  run.import = pipeline::timePhase([&] {
-    scene = importScene(request);
-    coloring = beginColoring(request, scene, pool);  // of all preparation that which is done to the scene as a whole
-  });
+  run.import = pipeline::timePhase([&] { scene = importScene(request); });
   if (!request.quiet) printWarnings(scene.warnings);
   scenes::Camera camera = chooseUnfittedCamera(scene, request.view, request.aspect());
   if (scene.lights.empty()) scenes::addDefaultLights(scene, camera);
@@ -114,7 +110,9 @@ int runRender(const RenderRequest& request) {
 
   pipeline::PreparedScene prepared;
   Box3 bounds = boundsOf(scene);
+  std::optional<Coloring> coloring;
   run.prepare = pipeline::timePhase([&] {
+    coloring = beginColoring(request, scene, pool);
     prepared = pipeline::prepareScene(std::move(scene), pool, request.grouping);
     if (coloring) coloring->finish(prepared, bounds, pool);
   });

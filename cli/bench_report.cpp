@@ -50,7 +50,7 @@ std::string headText(const BenchReport& report) {
   text += line("", fmt::format("{:.2f} % of the vertices eliminated; {:.2f} bytes per vertex, {:.2f} without groups",
                                100.0 * report.geometry.eliminated(), report.grouped_bytes_per_vertex,
                                report.original_bytes_per_vertex));
-  text += line("", "drawn by groups: " + drawnByGroupsText(report.drawn_by_groups));
+  text += line("", "drawn by groups: " + drawnByGroupsText(report.drawn_by_groups, report.grouping));
   return text;
 }
 

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "cli/view.h"
 #include "grouping/cluster_colors.h"
 #include "scenes/painted_parts.h"
 

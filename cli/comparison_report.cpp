@@ -128,7 +128,7 @@ std::vector<std::pair<std::string, std::string>> geometryFacts(const Comparison&
   const double original = comparison.original_bytes_per_vertex;
   const double grouped = comparison.grouped_bytes_per_vertex;
   return {{"eliminated", fmt::format("{:.2f} % ({} of {} vertices)", 100.0 * g.eliminated(), g.grouped, g.vertices)},
-          {"drawn by groups", drawnByGroupsText(comparison.drawn_by_groups)},
+          {"drawn by groups", drawnByGroupsText(comparison.drawn_by_groups, comparison.grouping)},
           {"displacement",
            fmt::format("max {:.3f} %, mean {:.3f} %, RMS {:.3f} % of the extent", 100.0 * g.displacement_max,
                        100.0 * g.displacement_mean, 100.0 * g.displacement_rms)},

@@ -81,9 +81,11 @@ std::string groupingText(const pipeline::GroupingOptions& options) {
          (options.prefer == pipeline::Prefer::kMemory ? ", to save memory" : "");
 }
 
-std::string drawnByGroupsText(double share) {
+std::string drawnByGroupsText(double share, const pipeline::GroupingOptions& options) {
   if (share > 0.0) return fmt::format("{:.1f} % of the patches' vertices", 100.0 * share);
-  return "no vertex, in full is faster here; --prefer memory draws by groups";
+  const bool chosen = options.method != pipeline::Grouping::kLinear && options.prefer == pipeline::Prefer::kSpeed;
+  return chosen ? "no vertex, in full is faster here; --prefer memory draws by groups"
+                : "no vertex, no group has enough of a patch";
 }
 
 nlohmann::ordered_json groupingJson(const pipeline::GroupingOptions& options) {

@@ -72,7 +72,7 @@ pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments,
 std::string groupingText(const pipeline::GroupingOptions& options);
 
 /// `63.1 % of the patches' vertices`, or why there are none.
-std::string drawnByGroupsText(double share);
+std::string drawnByGroupsText(double share, const pipeline::GroupingOptions& options);
 
 nlohmann::ordered_json groupingJson(const pipeline::GroupingOptions& options);
 

@@ -118,7 +118,8 @@ int runRender(const RenderRequest& request) {
   });
   camera = scenes::fitClipPlanes(camera, bounds);
   if (request.grouping.method != pipeline::Grouping::kNone && pipeline::shareDrawnByGroups(prepared) == 0.0)
-    prepared.warnings.push_back(fmt::format("{}: groups draw {}", request.input, drawnByGroupsText(0.0)));
+    prepared.warnings.push_back(
+        fmt::format("{}: groups draw {}", request.input, drawnByGroupsText(0.0, request.grouping)));
   if (!request.quiet) printWarnings(prepared.warnings);
 
   pipeline::Renderer renderer(pool);

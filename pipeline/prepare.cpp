@@ -107,11 +107,11 @@ grouping::VertexGroups findGroups(const mesh::Mesh& mesh, const GroupingOptions&
   return groupPlanar(mesh, planar);
 }
 
-// What is stored by planes, fitted to frames with everything in view, on one thread and on two. Terrain and sphere of
-// 4 M vertices are transformed and clipped 1.00 to 1.15 times as fast as in full if runs have at least 120 vertices,
-// 0.98 to 1.10 at 80 and 0.88 to 1.0 at 16, where they take 4.8 and 5.0 bytes a vertex in place of 5.6 and 5.9. Meshes
-// of 0.9 M vertices and more gain (1.03 to 1.16 times as fast), those of 0.08 to 0.6 M, which fit the caches, mostly
-// lose (0.91 to 1.1). Border vertices count once per patch.
+// What is stored by planes, by frames with everything in view (docs/experiments.md, sections large and sweep). Terrain
+// and sphere of 4 M vertices are transformed and clipped 1.00 to 1.09 times as fast as in full if runs have at least
+// 120 vertices, and 0.91 to 0.93 times if they have 16, where they take 4.8 and 5.0 bytes a vertex in place of 5.6
+// and 5.9. Meshes of 0.08 to 0.6 M vertices, which fit the caches, lose: 0.91 to 0.96 times. Border vertices count once
+// per patch.
 constexpr std::uint32_t kMinPlaneRun = 120;
 constexpr std::uint64_t kMinPlanarVertices = 900'000;
 // A run of this length takes less memory than its vertices in full.

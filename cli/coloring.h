@@ -1,8 +1,6 @@
 // cli/coloring: a picture in which colours tell the parts of a surface apart, from the scene to the pixels.
 #pragma once
 
-#include <vector>
-
 #include "cli/cut_options.h"
 #include "cli/scene_options.h"
 #include "pipeline/triangle_colors.h"
@@ -29,7 +27,7 @@ class Coloring {
  private:
   ColorBy by_;
   pipeline::Overlay what_;
-  std::vector<mesh::Mesh> surfaces_;  // of groups and patches, until finish()
+  pipeline::SceneSurface surface_;    // of groups and patches, until finish()
   scenes::Scene overlay_;             // of clusters, until finish()
   pipeline::TriangleColors colors_;
 };

@@ -91,8 +91,9 @@ Image8 picture(Context& context, const std::string& model, const FaceClusters& c
   material.base_color = Vec4(1.0F);
   scenes::Scene scene = sceneOf(mesh, material);
   Extras extras;
-  extras.colors = pipeline::colorsByPart(scene, grouping::clusterOfFace(clusters, cut),
-                                         grouping::colorClusters(mesh, clusters, cut, scenes::kPartColors));
+  extras.colors = pipeline::colorsByPart(grouping::clusterOfFace(clusters, cut),
+                                         grouping::colorClusters(mesh, clusters, cut, scenes::kPartColors),
+                                         pipeline::faceCountsOf(scene));
   if (overlay.any()) extras.overlay = pipeline::clusterOverlay(mesh, clusters, cut, overlay);
   const scenes::Camera camera = cameraOn(extras.overlay ? *extras.overlay : scene, 20.0, 10.0, panel);
   return draw(std::move(scene), camera, panel, context.pool, std::move(extras));

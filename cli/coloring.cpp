@@ -7,12 +7,14 @@
 
 namespace sheaf::cli {
 
-Coloring::Coloring(const Clustering& c, const pipeline::Overlay& overlay, scenes::Scene& scene)
+Coloring::Coloring(const Clustering& c, const pipeline::Overlay& overlay, const pipeline::OverlayView& view,
+                   scenes::Scene& scene)
     : by_(ColorBy::kCluster), what_(overlay) {
   colors_ = pipeline::colorsByPart(grouping::clusterOfFace(c.clusters, c.cut),
                                    grouping::colorClusters(c.surface, c.clusters, c.cut, scenes::kPartColors),
                                    pipeline::faceCountsOf(scene));
-  if (overlay.any()) overlay_ = pipeline::clusterOverlay(c.surface, c.clusters, c.cut, overlay, c.world_from_surface);
+  if (overlay.any())
+    overlay_ = pipeline::clusterOverlay(c.surface, c.clusters, c.cut, overlay, view, c.world_from_surface);
   pipeline::whitenSurfaces(scene);
 }
 
@@ -21,12 +23,13 @@ Coloring::Coloring(ColorBy by, const pipeline::Overlay& overlay, scenes::Scene& 
   pipeline::whitenSurfaces(scene);
 }
 
-void Coloring::finish(pipeline::PreparedScene& prepared, Box3& bounds, TaskPool& pool) {
+void Coloring::finish(const pipeline::OverlayView& view, pipeline::PreparedScene& prepared, Box3& bounds,
+                      TaskPool& pool) {
   const bool of_groups = by_ == ColorBy::kGroup;
   if (by_ != ColorBy::kCluster) {
     colors_ = of_groups ? pipeline::colorsByGroup(prepared, surface_) : pipeline::colorsByPatch(prepared, surface_);
     surface_ = {};
-    if (what_.any()) overlay_ = of_groups ? pipeline::groupPlanes(prepared) : pipeline::patchBoxes(prepared);
+    if (what_.any()) overlay_ = of_groups ? pipeline::groupPlanes(prepared, view) : pipeline::patchBoxes(prepared, view);
   }
   if (!what_.any()) return;
   bounds.extend(scenes::boundsOf(overlay_));

@@ -13,13 +13,14 @@ enum class ColorBy { kCluster, kGroup, kPatch };
 class Coloring {
  public:
   /// Face clusters, neighbours in different colours. scene  that was clustered; loses its own colours
-  Coloring(const Clustering& clustering, const pipeline::Overlay& overlay, scenes::Scene& scene);
+  Coloring(const Clustering& clustering, const pipeline::Overlay& overlay, const pipeline::OverlayView& view,
+           scenes::Scene& scene);
   /// Groups or patches. scene  loses its own colours
   Coloring(ColorBy by, const pipeline::Overlay& overlay, scenes::Scene& scene);
 
   /// Finds the colours of what was prepared from the scene and adds the overlay to it.
   /// bounds  of the scene; made to hold the overlay too
-  void finish(pipeline::PreparedScene& prepared, Box3& bounds, TaskPool& pool);
+  void finish(const pipeline::OverlayView& view, pipeline::PreparedScene& prepared, Box3& bounds, TaskPool& pool);
 
   /// Afterwards. frame  drawn with want_linear and want_ids
   void apply(pipeline::Frame& frame, TaskPool& pool) const { pipeline::colorPixels(colors_, frame, pool); }

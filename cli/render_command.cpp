@@ -78,10 +78,12 @@ void writeReports(const RenderRequest& request, const pipeline::RunTimes& run, c
 }
 
 /// Before the scene is prepared; takes the scene's colours.
-std::optional<Coloring> beginColoring(const RenderRequest& request, scenes::Scene& scene, TaskPool& pool) {
+std::optional<Coloring> beginColoring(const RenderRequest& request, const pipeline::OverlayView& view,
+                                      scenes::Scene& scene, TaskPool& pool) {
   if (!request.color_by) return std::nullopt;
   if (request.color_by != ColorBy::kCluster) return Coloring(*request.color_by, request.cut.overlay, scene);
-  return Coloring(clusterScene(request.cut, scene, request.input, request.view.z_up, pool), request.cut.overlay, scene);
+  return Coloring(clusterScene(request.cut, scene, request.input, request.view.z_up, pool), request.cut.overlay, view,
+                  scene);
 }
 
 int runRender(const RenderRequest& request) {
@@ -112,9 +114,10 @@ int runRender(const RenderRequest& request) {
   Box3 bounds = boundsOf(scene);
   std::optional<Coloring> coloring;
   run.prepare = pipeline::timePhase([&] {
-    coloring = beginColoring(request, scene, pool);
+    const pipeline::OverlayView view{scenes::fitClipPlanes(camera, bounds), request.size.height};
+    coloring = beginColoring(request, view, scene, pool);
     prepared = pipeline::prepareScene(std::move(scene), pool, request.grouping);
-    if (coloring) coloring->finish(prepared, bounds, pool);
+    if (coloring) coloring->finish(view, prepared, bounds, pool);
   });
   camera = scenes::fitClipPlanes(camera, bounds);
   if (request.grouping.method != pipeline::Grouping::kNone && pipeline::shareDrawnByGroups(prepared) == 0.0)

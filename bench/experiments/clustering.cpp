@@ -94,8 +94,11 @@ Image8 picture(Context& context, const std::string& model, const FaceClusters& c
   extras.colors = pipeline::colorsByPart(grouping::clusterOfFace(clusters, cut),
                                          grouping::colorClusters(mesh, clusters, cut, scenes::kPartColors),
                                          pipeline::faceCountsOf(scene));
-  if (overlay.any()) extras.overlay = pipeline::clusterOverlay(mesh, clusters, cut, overlay);
-  const scenes::Camera camera = cameraOn(extras.overlay ? *extras.overlay : scene, 20.0, 10.0, panel);
+  scenes::Camera camera = cameraOn(scene, 20.0, 10.0, panel);
+  if (overlay.any()) {
+    extras.overlay = pipeline::clusterOverlay(mesh, clusters, cut, overlay, {camera, panel.height});
+    camera = cameraOn(*extras.overlay, 20.0, 10.0, panel);  // it is larger than the surface
+  }
   return draw(std::move(scene), camera, panel, context.pool, std::move(extras));
 }
 

@@ -66,7 +66,7 @@ int runGroup(GroupRequest request) {
   const mesh::Mesh mesh = scenes::joinedMesh(scene);
 
   const InterruptGuard guard;
-  const grouping::VertexGroups groups = searchNamed(mesh, request, guard);
+  grouping::VertexGroups groups = searchNamed(mesh, request, guard);
   guard.endIfInterrupted();
   GroupReport report{.request = request,
                      .name = scene.name,
@@ -79,7 +79,10 @@ int runGroup(GroupRequest request) {
   for (const std::string& warning : groups.warnings)
     report.warnings.push_back(fmt::format("{}: {}", request.input, warning));
   if (!request.quiet && !request.json) printWarnings(report.warnings);
-  if (!request.output.empty()) grouping::saveGroups(request.output, groups, {.parameter_bits = request.saved_bits});
+  if (!request.output.empty()) {
+    groups.mesh_checksum = grouping::meshChecksum(mesh);
+    grouping::saveGroups(request.output, groups, {.parameter_bits = request.saved_bits});
+  }
   if (!request.snapped.empty()) scenes::writePly(request.snapped, grouping::snappedMesh(mesh, groups));
   writeStdout(request.json ? groupJson(report) : groupText(report));
   return 0;

@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/saved_file.h"
 #include "scenes/scene.h"
 
 namespace sheaf::cli {
@@ -14,6 +15,15 @@ namespace {
 using Json = nlohmann::ordered_json;
 using scenes::Camera;
 using scenes::Scene;
+
+constexpr const char* kFooter =
+    "Of a saved file it says what it holds and whether it is intact: one that was damaged, cut short or made by\n"
+    "another version of sheaf is refused with exit code 3 or 4.\n"
+    "\n"
+    "Examples:\n"
+    "  sheaf info model.glb --json\n"
+    "  sheaf info groups.sheaf\n"
+    "\n";
 
 struct InfoOptions {
   std::string input;
@@ -120,6 +130,10 @@ std::string infoJson(const Scene& scene) {
 }
 
 int runInfo(const InfoOptions& options) {
+  if (isSavedFile(options.input)) {
+    writeStdout(options.json ? savedFileJson(options.input) : savedFileText(options.input));
+    return 0;
+  }
   const Scene scene = scenes::loadScene(options.input);
   if (!options.quiet && !options.json) printWarnings(scene.warnings);
   writeStdout(options.json ? infoJson(scene) : infoText(scene));
@@ -131,10 +145,10 @@ int runInfo(const InfoOptions& options) {
 void addInfoCommand(CLI::App& app, Run& run) {
   CLI::App* command = app.add_subcommand("info", "Say what is in a file");
   const auto options = std::make_shared<InfoOptions>();
-  command->add_option("INPUT", options->input, "A mesh file or builtin:NAME")->required();
+  command->add_option("INPUT", options->input, "A mesh file, builtin:NAME, or a .sheaf file that group or cluster has saved")->required();
   command->add_flag("--json", options->json, "As JSON, warnings included");
   command->add_flag("-q,--quiet", options->quiet, "No warnings on stderr");
-  command->footer(std::string("Example: sheaf info model.glb --json\n\n") + kExitCodes);
+  command->footer(std::string(kFooter) + kExitCodes);
   command->callback([options, &run] { run = [options] { return runInfo(*options); }; });
 }
 

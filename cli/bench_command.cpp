@@ -75,13 +75,19 @@ BenchRequest understand(const BenchArguments& arguments) {
   return request;
 }
 
+pipeline::BaselineBench prepare(const BenchRequest& request, const scenes::Scene& scene,
+                                const pipeline::RenderSettings& settings, TaskPool& pool) {
+  ProgressLine line("grouping", request.quiet);
+  return {scene, request.grouping, settings, pool, shownOn(line)};
+}
+
 BenchReport measure(const BenchRequest& request, const scenes::Scene& scene, const std::vector<ViewRow>& rows,
                     TaskPool& pool) {
   pipeline::RenderSettings settings;
   settings.width = request.size.width;
   settings.height = request.size.height;
   settings.background = backgroundOf(request, scene);
-  pipeline::BaselineBench bench(scene, request.grouping, settings, pool);
+  pipeline::BaselineBench bench = prepare(request, scene, settings, pool);
   BenchReport report;
   report.context = contextOf(request, pool);
   report.grouping = request.grouping;

@@ -87,7 +87,11 @@ int compareScene(const SceneCompareRequest& request) {
   settings.height = request.size.height;
   settings.background = backgroundOf(request, scene);
   ComparisonReport report;
-  report.comparison = pipeline::compareGrouping(scene, cameras, request.grouping, settings, pool);
+  {
+    ProgressLine line("grouping", request.quiet);
+    report.comparison =
+        pipeline::compareGrouping(scene, cameras, request.grouping, settings, pool, shownOn(line));
+  }
   report.context = contextOf(request, pool);
   report.triangles = scene.triangleCount();
   report.limited = !request.limits.none();

@@ -116,7 +116,8 @@ int runRender(const RenderRequest& request) {
   run.prepare = pipeline::timePhase([&] {
     const pipeline::OverlayView view{scenes::fitClipPlanes(camera, bounds), request.size.height};
     coloring = beginColoring(request, view, scene, pool);
-    prepared = pipeline::prepareScene(std::move(scene), pool, request.grouping);
+    ProgressLine line("grouping", request.quiet);
+    prepared = pipeline::prepareScene(std::move(scene), pool, request.grouping, shownOn(line));
     if (coloring) coloring->finish(view, prepared, bounds, pool);
   });
   camera = scenes::fitClipPlanes(camera, bounds);

@@ -86,7 +86,7 @@ void addPictureOptions(CLI::App& command, SceneArguments& a) {
       ->type_name("N");
   command.add_option("--simd", a.simd, "Use this SIMD target (see sheaf --version);\nthe image does not depend on it")
       ->type_name("NAME");
-  command.add_flag("-q,--quiet", a.quiet, "No warnings on stderr");
+  command.add_flag("-q,--quiet", a.quiet, "No warnings and no progress on stderr");
 }
 
 void addCameraOptions(CLI::App& command, SceneArguments& a) {

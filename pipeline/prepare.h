@@ -103,6 +103,9 @@ struct PreparedScene {
 
 /// Cuts, reorders and packs. The scene's meshes and texture pixels are released as they are taken over, so that mesh
 /// and prepared mesh do not stand in memory together for longer than one mesh.
-PreparedScene prepareScene(scenes::Scene scene, TaskPool& pool, const GroupingOptions& grouping = {});
+/// progress  of the search for lines, which may take long: its share over all meshes; returning false does not stop it.
+///           May be empty
+PreparedScene prepareScene(scenes::Scene scene, TaskPool& pool, const GroupingOptions& grouping = {},
+                           const grouping::Progress& progress = {});
 
 }  // namespace sheaf::pipeline

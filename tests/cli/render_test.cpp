@@ -305,4 +305,22 @@ TEST_CASE("cli/render: a coloured EXR shows what the PNG shows") {
   CHECK(raster::compareImages(read, raster::readImage(folder.file("a.png"))).max_error <= 2);
 }
 
+TEST_CASE("cli/render: linear grouping shows how far it is, on a terminal only, as compare and bench do") {
+  const TempFolder folder;
+  for (Words arguments : {Words{"render", "builtin:terrain?n=90", "--size", "64x64", "-o", "x.png"},
+                          Words{"compare", "builtin:sphere?n=20", "--size", "64x64"},
+                          Words{"bench", "builtin:sphere?n=20", "--size", "64x64", "--frames", "1"}}) {
+    CAPTURE(arguments.front());
+    arguments.insert(arguments.end(), {"--grouping", "linear"});
+    CHECK(runSheaf(folder, arguments).err.find("grouping ") == std::string::npos);
+    RunSettings settings;
+    settings.err_is_terminal = true;
+    const std::string shown = runSheaf(folder, arguments, settings).err;
+    CHECK(shown.starts_with("\rgrouping "));
+    CHECK(shown.find(" %") != std::string::npos);
+    arguments.emplace_back("-q");
+    CHECK(runSheaf(folder, arguments, settings).err.empty());
+  }
+}
+
 }  // namespace sheaf::cli

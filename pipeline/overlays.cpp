@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kDark = 0.01F;
 constexpr double kWidthPx = 1.6;        ///< of a bar
-constexpr double kLargestWidth = 0.05;  ///< the same, of the diagonal of what it outlines
+constexpr double kLargestWidth = 0.03;  ///< the same, of the diagonal of what it outlines
 constexpr int kLatticeCells = 4;        ///< per side of a plane
 
 /// A place and three axes in the world, which need neither be long nor at right angles.
@@ -34,9 +34,9 @@ class PixelSize {
       : camera_(view.camera),
         forward_(glm::normalize(view.camera.target - view.camera.eye)),
         is_parallel_(view.camera.orthographic_height > 0.0),
-        at_unit_depth_((is_parallel_ ? view.camera.orthographic_height
-                                     : 2.0 * std::tan(0.5 * view.camera.vertical_fov_rad)) /
-                       view.height_px) {}
+        at_unit_depth_(
+            (is_parallel_ ? view.camera.orthographic_height : 2.0 * std::tan(0.5 * view.camera.vertical_fov_rad)) /
+            view.height_px) {}
 
   double at(const DVec3& p) const { return is_parallel_ ? at_unit_depth_ : at_unit_depth_ * depthOf(p); }
   DVec3 toEye(const DVec3& p) const { return is_parallel_ ? -forward_ : camera_.eye - p; }
@@ -188,8 +188,8 @@ scenes::Scene clusterOverlay(const mesh::Mesh& mesh, const grouping::FaceCluster
   for (const std::uint32_t node : cut) {
     const grouping::ClusterShape shape = grouping::shapeOf(mesh, clusters, node);
     const Frame frame =
-        world_from_mesh * Frame{DVec3(shape.center), DMat3(DVec3(shape.frame.axis_s), DVec3(shape.frame.axis_t),
-                                                           DVec3(shape.frame.normal))};
+        world_from_mesh * Frame{DVec3(shape.center),
+                                DMat3(DVec3(shape.frame.axis_s), DVec3(shape.frame.axis_t), DVec3(shape.frame.normal))};
     const DVec3 lo(shape.lo), hi(shape.hi);
     if (what.boxes) bars.addBox(frame, lo, hi);
     if (what.planes) bars.addLattice(frame, 2, {lo.x, lo.y, 0.0}, {hi.x, hi.y, 0.0});

@@ -215,7 +215,8 @@ TEST_CASE("pipeline/overlays: boxes of patches and planes of groups stand where 
 
 TEST_CASE("pipeline/overlays: clusters of one face, of no size, and none") {
   const Clustered each(mesh::makeCube(), 12);
-  CHECK(clusterOverlay(each.mesh, each.clusters, each.cut, {true, true}, viewOf(each.mesh)).triangleCount() == 12 * 22 * 12);
+  CHECK(clusterOverlay(each.mesh, each.clusters, each.cut, {true, true}, viewOf(each.mesh)).triangleCount() ==
+        12 * 22 * 12);
   mesh::Mesh point;
   point.positions.assign(3, Vec3(2.0F));
   point.triangles = {{0, 1, 2}};

@@ -145,7 +145,10 @@ int runInfo(const InfoOptions& options) {
 void addInfoCommand(CLI::App& app, Run& run) {
   CLI::App* command = app.add_subcommand("info", "Say what is in a file");
   const auto options = std::make_shared<InfoOptions>();
-  command->add_option("INPUT", options->input, "A mesh file, builtin:NAME, or a .sheaf file that group or cluster has saved")->required();
+  command
+      ->add_option("INPUT", options->input,
+                   "A mesh file, builtin:NAME, or a .sheaf file that group or cluster has saved")
+      ->required();
   command->add_flag("--json", options->json, "As JSON, warnings included");
   command->add_flag("-q,--quiet", options->quiet, "No warnings on stderr");
   command->footer(std::string(kFooter) + kExitCodes);

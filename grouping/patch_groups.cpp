@@ -11,6 +11,7 @@
 #include "grouping/cluster_shapes.h"
 #include "grouping/group_assembly.h"
 #include "grouping/group_quality.h"
+#include "grouping/position_hash.h"
 #include "grouping/quadric.h"
 
 namespace sheaf::grouping {
@@ -25,14 +26,6 @@ void claim(std::uint32_t& owner, std::uint32_t by) {
   else if (owner != by)
     owner = kSeveral;
 }
-
-struct PositionHash {
-  std::size_t operator()(const Vec3& p) const {
-    std::size_t hash = 0;
-    for (int k = 0; k < 3; ++k) hash = (hash ^ std::hash<float>{}(p[k])) * 0x9E3779B97F4A7C15U;
-    return hash ^ hash >> 32;
-  }
-};
 
 // #V, whether a vertex may move: it is inside one patch, and no other vertex lies where it does. Those stand at seams
 // of attributes: one might be retained and the other go to the grid of a plane.

@@ -32,6 +32,13 @@ Parts patchesOf(const PreparedMesh& mesh, std::size_t face_count) {
   return parts;
 }
 
+/// What at least two of them are, else kNoIndex.
+std::uint32_t commonOf(const std::array<std::uint32_t, 3>& groups) {
+  const auto [a, b, c] = groups;
+  if (a == b || a == c) return a;
+  return b == c ? b : kNoIndex;
+}
+
 /// Planes and lines of a mesh by number, whatever patch their runs are in.
 class GroupNumbers {
  public:
@@ -62,9 +69,7 @@ Parts groupsOf(const PreparedMesh& mesh, std::size_t face_count) {
     for (std::uint32_t slot = patch.first_triangle; slot < patch.first_triangle + patch.triangle_count; ++slot) {
       std::array<std::uint32_t, 3> group{};
       for (std::size_t k = 0; k < 3; ++k) group[k] = group_of_vertex[mesh.corners[k][slot]];
-      parts.of_face[mesh.triangle_source[slot]] = group[0] == group[1] || group[0] == group[2] ? group[0]
-                                                  : group[1] == group[2]                       ? group[1]
-                                                                                               : kNoIndex;
+      parts.of_face[mesh.triangle_source[slot]] = commonOf(group);
     }
   }
   parts.count = numbers.count();
@@ -129,6 +134,15 @@ TriangleColors colorsByPart(std::span<const std::uint32_t> part_of_face, std::sp
   }
   assert(part_of_face.empty());
   return colors;
+}
+
+std::vector<std::uint32_t> groupOfFace(const grouping::VertexGroups& groups,
+                                       std::span<const mesh::Triangle> triangles) {
+  std::vector<std::uint32_t> group_of_face;
+  group_of_face.reserve(triangles.size());
+  for (const mesh::Triangle& t : triangles)
+    group_of_face.push_back(commonOf({groups.owner[t[0]], groups.owner[t[1]], groups.owner[t[2]]}));
+  return group_of_face;
 }
 
 TriangleColors colorsByPatch(const PreparedScene& scene, const SceneSurface& surface) {

@@ -22,8 +22,8 @@ namespace sheaf::pipeline {
 /// Of a triangle that is in no part: it stays white.
 inline constexpr std::uint8_t kUncolored = 0xFF;
 
-/// By instance, then by triangle of its mesh: a scenes::partColor(), or kUncolored. Instances beyond the last keep their
-/// own colours.
+/// By instance, then by triangle of its mesh: a scenes::partColor(), or kUncolored. Instances beyond the last keep
+/// their own colours.
 using TriangleColors = std::vector<std::vector<std::uint8_t>>;
 
 /// The surfaces of all instances as one (mesh::surfaceOf() of scenes::joinedMesh()): who is whose neighbour.
@@ -47,6 +47,9 @@ SceneSurface surfaceOf(const scenes::Scene& scene);
 /// face_count     by instance
 TriangleColors colorsByPart(std::span<const std::uint32_t> part_of_face, std::span<const std::uint32_t> color_of_part,
                             std::span<const std::size_t> face_count);
+
+/// #F, the group that at least two corners of a triangle are in, kNoIndex if there is none.
+std::vector<std::uint32_t> groupOfFace(const grouping::VertexGroups& groups, std::span<const mesh::Triangle> triangles);
 
 /// Each instance has patches of its own. surface  of the scene that `scene` was prepared from
 TriangleColors colorsByPatch(const PreparedScene& scene, const SceneSurface& surface);

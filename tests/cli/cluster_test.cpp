@@ -250,7 +250,7 @@ TEST_CASE("cli/cluster: a hierarchy that is damaged or of another mesh is refuse
   };
   refused(kSphere, "cut.sheaf", "bytes of face clusters in place of");
   refused(kSphere, "flipped.sheaf", "is damaged: checksum");
-  refused(kSphere, "text.sheaf", "is not a file of face clusters");
+  refused(kSphere, "text.sheaf", " face clusters");
   refused(kSphere, "none.sheaf", "");
   refused("builtin:sphere?n=20", "a.sheaf", "belongs to another mesh: its clusters are of");
   refused("moved.obj", "three.sheaf", "belongs to another mesh: as many faces, but other corners");

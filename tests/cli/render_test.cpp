@@ -274,7 +274,6 @@ TEST_CASE("cli/render: colours that cannot be shown are refused: one line, exit 
       {{"--overlay", "boxes"}, "--overlay is drawn over parts of a surface: say with --color-by which"},
       {{"--clusters", "9"}, "--clusters is about face clusters: add --color-by cluster"},
       {{"--color-by", "patch", "--tolerance", "1%"}, "--tolerance is about face clusters"},
-      {{"--color-by", "patch", "--from", "a.sheaf"}, "--from is about face clusters"},
       {{"--color-by", "cluster", "--clusters", "9", "--max-faces", "9"}, "each choose a cut"},
   };
   for (const auto& [options, reason] : wrong) {

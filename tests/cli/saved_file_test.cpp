@@ -107,4 +107,92 @@ TEST_CASE("cli/saved_file: info refuses what is damaged, cut short, of another v
   CHECK(runSheaf(folder, {"info", "missing.sheaf"}).code == 3);
 }
 
+TEST_CASE("cli/saved_file: saved groups of every kind are drawn, and drawn right, in any scene") {
+  const TempFolder folder;
+  // Two materials, two pieces that touch, corners without normals: drawn with more vertices than are grouped.
+  folder.write("two.obj",
+               "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 1\nv 2 0.001 0\nv 2 1 0.002\nusemtl a\nf 1 2 5\nf 2 3 5\n"
+               "f 3 4 5\nf 4 1 5\nusemtl b\nf 2 6 7 3\n");
+  const std::vector<Words> kinds = {{},
+                                    {"--method", "linear"},
+                                    {"--method", "cluster"},
+                                    {"--planes", "both", "--metric", "quadric"},
+                                    {"--epsilon", "2%", "--bits", "6"}};
+  for (const std::string input : {kTeapot, "builtin:gallery?detail=1", "two.obj"})
+    for (const Words& kind : kinds) {
+      CAPTURE(input);
+      Words arguments = {"group", input, "-o", "g.sheaf", "--json", "-q"};
+      arguments.insert(arguments.end(), kind.begin(), kind.end());
+      const json said = json::parse(runSheaf(folder, arguments).out);
+      const RunResult compared = runSheaf(
+          folder, {"compare", input, "--from", "g.sheaf", "--json", "-q", "--size", "160x120", "--views", "orbit:2"});
+      CAPTURE(compared.err);
+      REQUIRE(compared.code == 0);
+      const json report = json::parse(compared.out);
+      CHECK(report["drawing_right"] == true);
+      CHECK(report["grouping"]["saved"] == true);
+      CHECK(report["grouping"]["epsilon"] == said["epsilon"]);
+      CHECK(report["grouping"]["metric"] == said["metric"]);
+      if (kind.size() < 4)  // exact, but for the grid of 16 bits
+        CHECK(report["displacement_fraction"]["max"].get<double>() ==
+              doctest::Approx(said["displacement_fraction"]["max"].get<double>()).epsilon(0.01));
+      run(folder, {"render", input, "--from", "g.sheaf", "--color-by", "group", "--overlay", "planes", "--size",
+                   "90x60", "-o", "x.png", "-q"});
+    }
+  run(folder, {"group", kTeapot, "-o", "g.sheaf"});
+  run(folder, {"bench", kTeapot, "--from", "g.sheaf", "--size", "90x60", "--frames", "2"});
+}
+
+TEST_CASE("cli/saved_file: saved groups fit whichever axis is up, and pictures do not depend on threads") {
+  const TempFolder folder;
+  run(folder, {"simplify", kTeapot, "--faces", "400", "-o", "t.ply", "-q"});
+  run(folder, {"group", "t.ply", "-o", "g.sheaf"});
+  const auto drawn = [&](const Words& options) {
+    Words arguments = {"render", "t.ply", "--from", "g.sheaf", "--size", "100x80", "-o", "x.png", "-q"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    run(folder, arguments);
+    return folder.read("x.png");
+  };
+  CHECK(drawn({"--view", "front"}) == drawn({"--view", "front", "--threads", "1"}));
+  for (const char* up : {"y", "z"}) {
+    const RunResult compared =
+        runSheaf(folder, {"compare", "t.ply", "--from", "g.sheaf", "--up", up, "--json", "--size", "100x80"});
+    REQUIRE(compared.code == 0);
+    const json report = json::parse(compared.out);
+    CHECK(report["displacement_fraction"]["max"].get<double>() > 0.004);
+    CHECK(report["displacement_fraction"]["max"].get<double>() < 0.0051);
+    CHECK(report["views"][0]["quality"]["silhouette_shift"]["mean_px"].get<double>() < 1.0);
+  }
+}
+
+TEST_CASE("cli/saved_file: what --from cannot be used for is refused: one line, no file") {
+  const TempFolder folder;
+  run(folder, {"group", kTeapot, "-o", "g.sheaf"});
+  run(folder, {"cluster", kTeapot, "--hierarchy", "h.sheaf"});
+  const std::vector<std::tuple<Words, int, std::string>> wrong = {
+      {{"render", "builtin:sphere", "--from", "g.sheaf", "-o", "x.png"}, 3, "g.sheaf: belongs to another mesh"},
+      {{"compare", "builtin:sphere", "--from", "g.sheaf", "-o", "x.png"}, 3, "g.sheaf: belongs to another mesh"},
+      {{"bench", "builtin:sphere", "--from", "g.sheaf"}, 3, "g.sheaf: belongs to another mesh"},
+      {{"compare", kTeapot, "--from", "h.sheaf"}, 3, "h.sheaf: is not a file of vertex groups"},
+      {{"cluster", kTeapot, "--from", "g.sheaf"}, 3, "g.sheaf: is not a file of face clusters"},
+      {{"render", kTeapot, "--from", "missing.sheaf", "-o", "x.png"}, 3, "missing.sheaf: cannot be opened"},
+      {{"render", kTeapot, "--from", "", "-o", "x.png"}, 2, "--from: the name of the file is empty"},
+      {{"render", kTeapot, "--from", "h.sheaf", "-o", "x.png"}, 2, "holds face clusters: add --color-by cluster"},
+      {{"render", kTeapot, "--from", "g.sheaf", "--grouping", "planar", "-o", "x.png"}, 2, "--grouping decides how"},
+      {{"render", kTeapot, "--from", "g.sheaf", "--epsilon", "1%", "-o", "x.png"}, 2, "--epsilon decides how"},
+      {{"compare", kTeapot, "--from", "g.sheaf", "--metric", "quadric"}, 2, "--metric decides how"},
+      {{"render", kTeapot, "--from", "g.sheaf", "--timings=g.sheaf"}, 2, "g.sheaf"},
+  };
+  for (const auto& [arguments, code, reason] : wrong) {
+    CAPTURE(reason);
+    const RunResult result = runSheaf(folder, arguments);
+    CAPTURE(result.err);
+    CHECK(result.code == code);
+    CHECK(result.out.empty());
+    CHECK(isOneErrorLine(result.err));
+    CHECK(result.err.find(reason) != std::string::npos);
+    CHECK(folder.fileCount() == 2);
+  }
+}
+
 }  // namespace sheaf::cli

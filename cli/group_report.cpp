@@ -43,8 +43,8 @@ std::string metricText(const VertexGroups& groups) {
 std::string groupFacts(const VertexGroups& groups) {
   const GroupingStats& stats = groups.stats;
   std::string text = line("epsilon", fmt::format("{:.4g} % of {:.6g}", 100.0 * groups.epsilon, groups.extent));
-  text += line("eliminated", fmt::format("{:.2f} % ({} of {} vertices in use)", 100.0 * stats.eliminated, stats.grouped,
-                                         stats.vertices));
+  text += line("eliminated", fmt::format("{:.2f} % ({} of {} joined vertices in use)", 100.0 * stats.eliminated,
+                                         stats.grouped, stats.vertices));
   text += line("retained",
                fmt::format("{} ({} defining, {} free)", stats.defining + stats.free, stats.defining, stats.free));
   text += line("groups", fmt::format("{}", groups.groups.size()));
@@ -86,8 +86,8 @@ nlohmann::ordered_json groupFactsJson(const VertexGroups& groups) {
 
 std::string groupText(const GroupReport& report) {
   const grouping::CompressionFigures& c = report.compression;
-  std::string text = line(
-      "mesh", fmt::format("{}: {} vertices, {} triangles", report.name, report.mesh_vertices, report.mesh_triangles));
+  std::string text = line("mesh", fmt::format("{}: {} joined vertices, {} triangles", report.name, report.mesh_vertices,
+                                              report.mesh_triangles));
   text += line("method", methodText(report));
   text += groupFacts(report.groups);
   text += line("bits per vertex",
@@ -102,7 +102,7 @@ std::string groupJson(const GroupReport& report) {
   const grouping::CompressionFigures& c = report.compression;
   const GroupMethod method = report.request.method;
   Json json = {{"name", report.name},
-               {"vertices", report.mesh_vertices},
+               {"joined_vertices", report.mesh_vertices},
                {"triangles", report.mesh_triangles},
                {"method", nameOf(method, kMethodNames)},
                {"key", nullptr}};

@@ -123,7 +123,7 @@ std::string groupingText(const pipeline::GroupingOptions& options) {
 }
 
 std::string drawnByGroupsText(double share, const pipeline::GroupingOptions& options) {
-  if (share > 0.0) return fmt::format("{:.1f} % of the patches' vertices", 100.0 * share);
+  if (share > 0.0) return fmt::format("{:.1f} % of the patch vertices", 100.0 * share);
   const bool chosen = options.method != pipeline::Grouping::kLinear && options.prefer == pipeline::Prefer::kSpeed;
   return chosen ? "no vertex, in full is faster here; --prefer memory draws by groups"
                 : "no vertex, no group has enough of a patch";

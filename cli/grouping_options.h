@@ -77,7 +77,7 @@ pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments,
 /// `planar groups, distance metric, epsilon 0.5 %, 16-bit parameters`
 std::string groupingText(const pipeline::GroupingOptions& options);
 
-/// `63.1 % of the patches' vertices`, or why there are none.
+/// `63.1 % of the patch vertices`, or why there are none.
 std::string drawnByGroupsText(double share, const pipeline::GroupingOptions& options);
 
 nlohmann::ordered_json groupingJson(const pipeline::GroupingOptions& options);

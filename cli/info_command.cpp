@@ -58,10 +58,10 @@ std::string infoText(const Scene& scene) {
   const MeshTotals totals = totalsOf(scene);
   std::string text = fmt::format("name        {}\n", scene.name);
   text +=
-      fmt::format("meshes      {} ({} vertices, {} triangles; {} with texture coordinates, {} with colours)\n",
+      fmt::format("meshes      {} ({} file vertices, {} triangles; {} with texture coordinates, {} with colours)\n",
                   scene.meshes.size(), totals.vertices, totals.triangles, totals.with_texcoords, totals.with_colors);
-  text += fmt::format("instances   {} ({} vertices, {} triangles drawn)\n", scene.instances.size(), scene.vertexCount(),
-                      scene.triangleCount());
+  text += fmt::format("instances   {} ({} file vertices, {} triangles in all)\n", scene.instances.size(),
+                      scene.vertexCount(), scene.triangleCount());
   text += fmt::format("materials   {}\n", scene.materials.size());
   text += fmt::format("textures    {}", scene.textures.size());
   for (std::size_t i = 0; i < scene.textures.size(); ++i)
@@ -112,10 +112,10 @@ std::string infoJson(const Scene& scene) {
   for (const Camera& camera : scene.cameras) cameras.push_back(toJson(camera));
   Json json = {{"name", scene.name},
                {"meshes", scene.meshes.size()},
-               {"mesh_vertices", totals.vertices},
+               {"file_vertices", totals.vertices},
                {"mesh_triangles", totals.triangles},
                {"instances", scene.instances.size()},
-               {"vertices", scene.vertexCount()},
+               {"file_vertices_of_instances", scene.vertexCount()},
                {"triangles", scene.triangleCount()},
                {"materials", std::move(materials)},
                {"textures", std::move(textures)},
@@ -134,7 +134,9 @@ int runInfo(const InfoOptions& options) {
     writeStdout(options.json ? savedFileJson(options.input) : savedFileText(options.input));
     return 0;
   }
-  const Scene scene = scenes::loadScene(options.input);
+  scenes::ImportOptions import;
+  import.for_drawing = false;  // what is in the file
+  const Scene scene = scenes::loadScene(options.input, import);
   if (!options.quiet && !options.json) printWarnings(scene.warnings);
   writeStdout(options.json ? infoJson(scene) : infoText(scene));
   return 0;

@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/output.h"
+#include "cli/saved_file.h"
 #include "cli/view.h"
 #include "grouping/cluster_colors.h"
 #include "grouping/clusters_file.h"
@@ -31,6 +32,7 @@ void checkBeforehand(const ClusterRequest& request) {
 /// For a PLY or figures a mesh is as its file has it; a picture shows it as render does.
 scenes::Scene load(const ClusterRequest& request) {
   if (request.is_picture) return importScene(request);
+  refuseAsScene(request.input);
   scenes::ImportOptions import;
   import.for_drawing = false;
   return scenes::loadScene(request.input, import);

@@ -86,7 +86,10 @@ void addClusterOptions(CLI::App& command, const std::shared_ptr<ClusterArguments
       .add_option("-o,--output", a.output,
                   "The mesh in a colour per cluster: a PLY file, or a picture (PNG, JPEG,\nEXR ...) by the extension")
       ->type_name("FILE");
-  command.add_option("--hierarchy", a.hierarchy, "Save the whole hierarchy, as sheaf's own .sheaf file")
+  command
+      .add_option(
+          "--hierarchy", a.hierarchy,
+          "Save the whole hierarchy, as sheaf's own .sheaf file: for info, and for\n--from of cluster and render")
       ->type_name("FILE");
   command.add_flag("--json", a.json, "Report as JSON, warnings included");
   addPictureOptions(command, a);

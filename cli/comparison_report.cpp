@@ -136,7 +136,7 @@ std::vector<std::pair<std::string, std::string>> geometryFacts(const Comparison&
           {"normal deviation", fmt::format("max {:.1f}, RMS {:.2f} degrees", degrees(g.normal_deviation_max_rad),
                                            degrees(g.normal_deviation_rms_rad))},
           {"faces", fmt::format("{} flipped, {} collapsed", g.flipped_faces, g.collapsed_faces)},
-          {"bytes per vertex", fmt::format("{:.2f} original, {:.2f} grouped ({:.0f} %), each patch vertex", original,
+          {"bytes per vertex", fmt::format("{:.2f} original, {:.2f} grouped ({:.0f} %), by patch vertices", original,
                                            grouped, original > 0.0 ? 100.0 * grouped / original : 0.0)}};
 }
 

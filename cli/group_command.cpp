@@ -9,6 +9,7 @@
 #include "cli/group_report.h"
 #include "cli/interrupt.h"
 #include "cli/output.h"
+#include "cli/saved_file.h"
 #include "core/error.h"
 #include "grouping/cluster_patches.h"
 #include "grouping/groups_file.h"
@@ -60,6 +61,7 @@ int runGroup(GroupRequest request) {
     request.planar.planes = grouping::loadPlanes(request.plane_file);
     request.plane_set = fmt::format("{} planes of {}", request.planar.planes.size(), request.plane_file);
   }
+  refuseAsScene(request.input);
   scenes::ImportOptions import;
   import.for_drawing = false;
   const scenes::Scene scene = scenes::loadScene(request.input, import);

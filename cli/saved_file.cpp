@@ -136,6 +136,14 @@ SavedKind savedKindOf(const std::string& path) {
   return kindOrRefusal(bytes.empty() ? readFile(path, false) : bytes, path);  // readFile() says what is wrong
 }
 
+void refuseAsScene(const std::string& input) {
+  const std::optional<SavedKind> kind = kindOfBytes(firstBytes(input));
+  if (!kind) return;
+  throw Error(ErrorCode::kUsage,
+              fmt::format("{} holds {}: give the mesh, and this with --from (see sheaf info {})", input,
+                          *kind == SavedKind::kVertexGroups ? "vertex groups" : "face clusters", input));
+}
+
 std::string savedFileText(const std::string& path) {
   const std::string bytes = readFile(path, false);
   return line("name", path) + (kindOrRefusal(bytes, path) == SavedKind::kVertexGroups

@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/output.h"
+#include "cli/saved_file.h"
 #include "cli/values.h"
 #include "core/error.h"
 #include "core/stage_timer.h"
@@ -153,6 +154,7 @@ std::string simplifyJson(const SimplifyReport& report) {
 int runSimplify(const SimplifyRequest& request) {
   const bool is_file = !request.input.starts_with("builtin:");
   checkOutputs({{"-o", request.output}}, is_file ? std::vector{request.input} : std::vector<std::string>{});
+  refuseAsScene(request.input);
   scenes::ImportOptions import;
   import.for_drawing = false;
   const scenes::Scene scene = scenes::loadScene(request.input, import);

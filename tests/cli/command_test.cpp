@@ -309,7 +309,7 @@ TEST_CASE("cli/command: info says what is in a file, as text and as JSON, with w
   CHECK(nlohmann::json::parse(warned_json.out)["warnings"].size() == 1);
 }
 
-TEST_CASE("cli: each count of vertices has its name, the same in every command") {
+TEST_CASE("cli/command: each count of vertices has its name, the same in every command") {
   const TempFolder folder;
   // A sheet with a fold along its middle: made normals split its 31 vertices. One place is there twice.
   std::string obj;

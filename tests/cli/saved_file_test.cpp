@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "grouping/clusters_file.h"
 #include "grouping/groups_file.h"

@@ -118,7 +118,7 @@ std::string simplifyText(const SimplifyReport& report) {
     return fmt::format("{:<12}{}\n", head, text);
   };
   std::string text = line("mesh", report.name);
-  text += line("vertices", fmt::format("{} joined vertices to {}", report.vertices_before, after.vertexCount()) +
+  text += line("vertices", fmt::format("{} joined vertices in use to {}", report.vertices_before, after.vertexCount()) +
                                (report.result.positions != after.vertexCount()
                                     ? fmt::format(" at {} places", report.result.positions)
                                     : ""));

@@ -342,7 +342,7 @@ TEST_CASE("cli/command: each count of vertices has its name, the same in every c
   CHECK(cluster.find("961 surface vertices") != std::string::npos);
   CHECK(cluster_json["surface_vertices"] == 961);
   const auto [simplify, simplify_json] = said({"simplify", "--faces", "100", "-o", "x.ply"});
-  CHECK(simplify.find("962 joined vertices to ") != std::string::npos);
+  CHECK(simplify.find("962 joined vertices in use to ") != std::string::npos);
   const auto [compare, compare_json] = said({"compare", "--size", "64x48"});
   CHECK(compare.find("of 992 drawn vertices in use)") != std::string::npos);
   CHECK(compare_json["drawn_vertices"] == 992);

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <span>
+#include <utility>
 
 namespace sheaf::grouping {
 namespace {
@@ -227,6 +228,14 @@ ModelFrame modelFrameOf(const Mesh& mesh) {
   }
   if (farthest2 > 0.0) frame.scale = 0.5 / std::sqrt(farthest2);
   return frame;
+}
+
+void linkEdges(std::size_t cluster_count, DualGraph& graph) {
+  graph.first.assign(cluster_count, kNoIndex);
+  for (std::uint32_t id = 0; id < graph.edges.size(); ++id) {
+    DualEdge& e = graph.edges[id];
+    for (std::size_t side = 0; side < 2; ++side) e.next[side] = std::exchange(graph.first[e.face[side]], id);
+  }
 }
 
 DualGraph buildDualGraph(const Mesh& mesh, const ModelFrame& frame) {

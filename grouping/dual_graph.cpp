@@ -37,10 +37,12 @@ struct EdgeTable {
 EdgeTable collectEdges(const Mesh& mesh) {
   EdgeTable table;
   table.end.assign(mesh.vertexCount() + 1, 0);
+  // Saves to fetch the corners of every face twice.
+  const bool all_finite = std::ranges::all_of(mesh.positions, [](const Vec3& p) { return isFinite(p); });
   const auto for_each_edge = [&](const auto& body) {
     for (std::size_t f = 0; f < mesh.triangleCount(); ++f) {
       const Triangle& t = mesh.triangles[f];
-      if (!hasFiniteCorners(mesh, t)) continue;
+      if (!all_finite && !hasFiniteCorners(mesh, t)) continue;
       const TriangleEdges e = edgesOf(t);
       for (int i = 0; i < e.count; ++i) body(static_cast<std::uint32_t>(f), e.edges[static_cast<std::size_t>(i)]);
     }

@@ -314,9 +314,11 @@ void sortByCost(std::uint32_t face_count, MergeTree& tree) {
       if (child >= face_count) worst[i] = std::max(worst[i], worst[child - face_count]);
   std::vector<std::uint32_t> order(merges), rank(merges);
   std::iota(order.begin(), order.end(), 0U);
-  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return worst[a] < worst[b]; });
+  std::ranges::stable_sort(order, {}, [&](std::uint32_t merge) { return worst[merge]; });
   for (std::uint32_t i = 0; i < merges; ++i) rank[order[i]] = i;
   MergeTree sorted;
+  sorted.children.reserve(merges);
+  sorted.cost.reserve(merges);
   for (const std::uint32_t merge : order) {
     auto [a, b] = tree.children[merge];
     if (a >= face_count) a = face_count + rank[a - face_count];

@@ -40,7 +40,7 @@ TEST_CASE("grouping/face_contraction: in parts, a mesh has a hierarchy as good a
     CHECK(findBrokenMerge(clusters.faceCount(), clusters.children) == "");
     CHECK(clusters.roots == exact.roots);
     CHECK(clusters != exact);
-    CHECK(std::abs(sum(clusters) - sum(exact)) < 0.001 * double(exact.cost.size()));  // costs reach from -1 to 3
+    CHECK(std::abs(sum(clusters) - sum(exact)) < 0.002 * double(exact.cost.size()));  // costs reach from -1 to 3
     // A merge that costs less than the one before it is one that the latter has made possible, or one of its parts has.
     std::size_t out_of_order = 0;
     for (std::uint32_t i = 1; i < clusters.cost.size(); ++i) {

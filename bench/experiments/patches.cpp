@@ -4,6 +4,7 @@
 
 #include <array>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -71,7 +72,9 @@ PatchSet cutBySplit(const mesh::Mesh& mesh, TaskPool& pool) {
 
 /// The largest clusters within the limits, each a patch.
 PatchSet cutToWholeClusters(const mesh::Mesh& mesh, TaskPool& pool) {
-  const grouping::FaceClusters clusters = grouping::clusterFaces(mesh, {}, pool);
+  grouping::ClusterOptions options;
+  options.min_shape_faces = std::numeric_limits<std::uint32_t>::max();  // patches get bounds of their own
+  const grouping::FaceClusters clusters = grouping::clusterFaces(mesh, options, pool);
   const grouping::PatchLimits limits;
   PatchCut cut;
   cut.triangles = clusters.faces;
@@ -85,7 +88,7 @@ PatchSet cutToWholeClusters(const mesh::Mesh& mesh, TaskPool& pool) {
 }
 
 PatchSet cutToClusterPatches(const mesh::Mesh& mesh, TaskPool& pool) {
-  return grouping::clusterPatches(mesh, mesh, grouping::clusterFaces(mesh, {}, pool), {}, pool);
+  return grouping::clusterPatches(mesh, {}, pool);
 }
 
 /// Numbers of triangles in the result are the meshlets' own.

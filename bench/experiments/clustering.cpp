@@ -203,8 +203,9 @@ std::string writeClustering(Context& context) {
          "Large meshes are contracted in parts of 8192 clusters, as far as these do not depend on each other, and what "
          "is left in parts again, cut along other lines. So a part stays in a core's cache, and threads share parts "
          "out; the result does not depend on their number. Against a contraction in which every merge is the cheapest "
-         "of all, and against what it makes of the same mesh when each vertex is moved by up to a millionth of the "
-         "longest edge of the box, it is neither better nor worse:\n\n" +
+         "of all, and what both make of a mesh *shaken*: each vertex moved by up to a millionth of the longest edge of "
+         "the box. Parts cost about as much quality as shaking changes; most is lost on the dragon in 1000 clusters, "
+         "which are 5 to 15 % less flat:\n\n" +
          partsTable(context) + pictures(context);
 }
 

@@ -2,9 +2,8 @@
 //   Form   magic "SHEAFGRP", version, size, CRC-32 of all other bytes, then the groups; little-endian. Written once per
 //          vertex: the position of a retained one, the parameters of a grouped one; everything else follows from these
 //   Keeps  loading what was saved gives an equal value, if the parameters are not quantised
-//   Trust  none: a file with any byte changed is refused by its checksum, and one with a right checksum is checked
-//   field
-//          by field and as a whole (findInconsistency) before it is returned
+//   Trust  none: a file with any byte changed is refused by its checksum; one with a right checksum is checked field by
+//          field and as a whole (findInconsistency) before it is returned
 #pragma once
 
 #include <filesystem>

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "grouping/group_assembly.h"
 #include "grouping/group_quality.h"
 #include "grouping/quadric.h"
+#include "mesh/weld.h"
 
 namespace sheaf::grouping {
 namespace {
@@ -26,27 +26,18 @@ void claim(std::uint32_t& owner, std::uint32_t by) {
     owner = kSeveral;
 }
 
-struct PositionHash {
-  std::size_t operator()(const Vec3& p) const {
-    std::size_t hash = 0;
-    for (int k = 0; k < 3; ++k) hash = (hash ^ std::hash<float>{}(p[k])) * 0x9E3779B97F4A7C15U;
-    return hash ^ hash >> 32;
-  }
-};
-
-// #V, whether a vertex may move: it is inside one patch, and no other vertex lies where it does. Those stand at seams
-// of attributes: one might be retained and the other go to the grid of a plane.
+// #V, whether a vertex may move: it is inside one patch, and no other vertex in use lies where it does. Those stand at
+// seams of attributes: one might be retained and the other go to the grid of a plane.
 std::vector<bool> innerVertices(const mesh::Mesh& mesh, const PatchSet& set) {
   std::vector<std::uint32_t> patch_of(mesh.vertexCount(), kNoIndex);
   for (std::uint32_t p = 0; p < set.patches.size(); ++p)
     for (const std::uint32_t v : set.verticesOf(set.patches[p])) claim(patch_of[v], p);
-  std::unordered_map<Vec3, std::uint32_t, PositionHash> vertex_at;
-  vertex_at.reserve(mesh.vertexCount());
+  const std::vector<std::uint32_t> place = mesh::firstAtSamePlace(mesh.positions);
+  std::vector<std::uint32_t> vertex_at(mesh.vertexCount(), kNoIndex);
   for (std::uint32_t v = 0; v < patch_of.size(); ++v)
-    if (patch_of[v] != kNoIndex) claim(vertex_at.try_emplace(mesh.positions[v], kNoIndex).first->second, v);
+    if (patch_of[v] != kNoIndex) claim(vertex_at[place[v]], v);
   std::vector<bool> inner(mesh.vertexCount(), false);
-  for (std::uint32_t v = 0; v < patch_of.size(); ++v)
-    inner[v] = patch_of[v] < kSeveral && vertex_at.at(mesh.positions[v]) == v;
+  for (std::uint32_t v = 0; v < patch_of.size(); ++v) inner[v] = patch_of[v] < kSeveral && vertex_at[place[v]] == v;
   return inner;
 }
 

@@ -158,15 +158,15 @@ class PatchDrawer {
     RunStart start(at_);
     for (std::size_t r = 0; r < at_.run_count; ++r) {
       const grouping::VertexRun& run = runs()[r];
-      if (!isRejected(r)) transform(run, start, 0, run.vertex_count);
+      if (!isRejected(r)) transform({run, start, 0, run.vertex_count});
       start.skip(run);
     }
   }
 
-  void transform(const grouping::VertexRun& run, const RunStart& start, std::uint32_t begin, std::uint32_t end) {
-    transformRun(mesh_.vertices, at_, run, start, begin, end, view_.clip_from_object, worker_.clip);
-    projectVertices(worker_.clip, start.vertex + begin, start.vertex + end, viewport_, worker_.projected);
-    countTransformed(run, end - begin);
+  void transform(const RunPiece& piece) {
+    transformRun(mesh_.vertices, at_, piece, view_.clip_from_object, worker_.clip);
+    projectVertices(worker_.clip, piece.firstVertex(), piece.endVertex(), viewport_, worker_.projected);
+    countTransformed(piece.run, piece.end - piece.begin);
   }
 
   // Rejected and accepted runs give their codes to all members; in the others each vertex is coded, after which such a
@@ -246,11 +246,11 @@ class PatchDrawer {
     for (std::size_t r = 0; r < at_.run_count; ++r) {
       const grouping::VertexRun& run = runs()[r];
       for (std::uint32_t begin = 0; worker_.run_untransformed[r] && begin < run.vertex_count; begin += kRebuiltAtOnce) {
-        const std::uint32_t end = std::min<std::uint32_t>(begin + kRebuiltAtOnce, run.vertex_count);
-        const auto first = needed.begin() + start.vertex;
-        if (std::find(first + begin, first + end, true) == first + end) continue;
-        transform(run, start, begin, end);
-        codeExactly(start.vertex + begin, start.vertex + end);
+        const RunPiece piece{run, start, begin, std::min<std::uint32_t>(begin + kRebuiltAtOnce, run.vertex_count)};
+        const auto end = needed.begin() + piece.endVertex();
+        if (std::find(needed.begin() + piece.firstVertex(), end, true) == end) continue;
+        transform(piece);
+        codeExactly(piece.firstVertex(), piece.endVertex());
       }
       start.skip(run);
     }

@@ -11,6 +11,7 @@
 #include "cli/grouping_options.h"
 #include "cli/html_page.h"
 #include "cli/output.h"
+#include "cli/saved_groups.h"
 #include "cli/scene_options.h"
 #include "cli/views.h"
 #include "core/error.h"
@@ -54,6 +55,7 @@ struct BenchArguments : SceneArguments {
 
 struct BenchRequest : SceneRequest {
   pipeline::GroupingOptions grouping;
+  std::string saved_groups;  ///< a file to take groups from, else empty
   ViewsRequest views;
   int frames = kDefaultFrames;
   std::string report;  ///< HTML; empty: not written
@@ -64,6 +66,7 @@ BenchRequest understand(const BenchArguments& arguments) {
   BenchRequest request;
   understandScene(arguments, request);
   request.grouping = understandGrouping(arguments.grouping, kUsualGrouping);
+  request.saved_groups = arguments.grouping.from.value_or("");
   const ViewRequest& view = request.view;
   if (arguments.views)
     request.views = understandViews(*arguments.views, view);
@@ -75,13 +78,19 @@ BenchRequest understand(const BenchArguments& arguments) {
   return request;
 }
 
+pipeline::BaselineBench prepare(const BenchRequest& request, const scenes::Scene& scene,
+                                const pipeline::RenderSettings& settings, TaskPool& pool) {
+  ProgressLine line("grouping", request.quiet);
+  return {scene, request.grouping, settings, pool, shownOn(line)};
+}
+
 BenchReport measure(const BenchRequest& request, const scenes::Scene& scene, const std::vector<ViewRow>& rows,
                     TaskPool& pool) {
   pipeline::RenderSettings settings;
   settings.width = request.size.width;
   settings.height = request.size.height;
   settings.background = backgroundOf(request, scene);
-  pipeline::BaselineBench bench(scene, request.grouping, settings, pool);
+  pipeline::BaselineBench bench = prepare(request, scene, settings, pool);
   BenchReport report;
   report.context = contextOf(request, pool);
   report.grouping = request.grouping;
@@ -106,11 +115,14 @@ BenchReport measure(const BenchRequest& request, const scenes::Scene& scene, con
   return report;
 }
 
-int runBench(const BenchRequest& request) {
-  checkOutputs({{"--report", request.report}}, inputFiles(request));
+int runBench(BenchRequest request) {
+  std::vector<std::string> inputs = inputFiles(request);
+  if (!request.saved_groups.empty()) inputs.push_back(request.saved_groups);
+  checkOutputs({{"--report", request.report}}, inputs);
   if (request.simd) forceSimdTarget(*request.simd);
   TaskPool pool(request.threads);
   scenes::Scene scene = importScene(request);
+  request.grouping = groupsToDrawWith(request.saved_groups, request.grouping, request, scene).options;
   const std::vector<ViewRow> rows = makeViews(scene, request.views, request.view, request.aspect(), request.frames);
   if (scene.lights.empty()) scenes::addDefaultLights(scene, rows.front().cameras.front());
   BenchReport report = measure(request, scene, rows, pool);
@@ -137,6 +149,7 @@ void addBenchCommand(CLI::App& app, Run& run) {
   addReportOption(*command, a.report);
   addPictureOptions(*command, a);
   addGroupingOptions(*command, a.grouping, kUsualGrouping);
+  addSavedGroupsOption(*command, a.grouping);
   addCameraOptions(*command, a);
   command
       ->add_option("--views", a.views,

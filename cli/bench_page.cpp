@@ -135,15 +135,15 @@ void addSection(const BenchSection& section, std::uint64_t vertices, TaskPool& p
 std::string benchPage(const BenchReport& report, TaskPool& pool) {
   HtmlPage page(fmt::format("{}: time with and without vertex groups", report.context.input));
   page.paragraph(
-      fmt::format("{} triangles, {} vertices. Three ways to draw the same scene, frame by frame in turns: "
+      fmt::format("{} triangles, {} patch vertices. Three ways to draw the same scene, frame by frame in turns: "
                   "classic transforms every vertex of the original mesh; modern leaves out patches that are "
                   "out of view or face away, testing each; grouped finds the same ones by way of a tree over them, "
                   "and transforms and clips by groups: {}.",
                   withCommas(report.triangles), withCommas(report.vertices), groupingText(report.grouping)));
-  page.cards({{fmt::format("{:.1f} %", 100.0 * report.geometry.eliminated()), "of the vertices eliminated"},
-              {fmt::format("{:.1f} %", 100.0 * report.drawn_by_groups), "of the patches' vertices drawn by groups"},
+  page.cards({{fmt::format("{:.1f} %", 100.0 * report.geometry.eliminated()), "of the drawn vertices eliminated"},
+              {fmt::format("{:.1f} %", 100.0 * report.drawn_by_groups), "of the patch vertices drawn by groups"},
               {fmt::format("{:.2f}", report.grouped_bytes_per_vertex),
-               fmt::format("bytes per vertex, {:.2f} without groups", report.original_bytes_per_vertex)}});
+               fmt::format("bytes per patch vertex, {:.2f} without groups", report.original_bytes_per_vertex)}});
   for (const BenchSection& section : report.sections) addSection(section, report.vertices, pool, page);
   page.heading(2, "How to read it");
   page.paragraph(

@@ -38,8 +38,8 @@ std::string msText(const Quartiles& q) {
 
 std::string headText(const BenchReport& report) {
   const pipeline::RunContext& c = report.context;
-  std::string text = line("scene", fmt::format("{}, {} triangles, {} vertices", c.input, withCommas(report.triangles),
-                                               withCommas(report.vertices)));
+  std::string text = line("scene", fmt::format("{}, {} triangles, {} patch vertices", c.input,
+                                               withCommas(report.triangles), withCommas(report.vertices)));
   text += line("run", fmt::format("{}x{}, {} thread{}, {}", c.width, c.height, c.threads, c.threads == 1 ? "" : "s",
                                   c.simd_target));
   text += line("build", fmt::format("{}, revision {}, {}", c.build, c.revision, c.flags));
@@ -47,9 +47,10 @@ std::string headText(const BenchReport& report) {
   text += line("classic", "every vertex of the original mesh");
   text += line("modern", "patches out of view or facing away left out, each tested");
   text += line("grouped", fmt::format("the same left out by way of their tree; {}", groupingText(report.grouping)));
-  text += line("", fmt::format("{:.2f} % of the vertices eliminated; {:.2f} bytes per vertex, {:.2f} without groups",
-                               100.0 * report.geometry.eliminated(), report.grouped_bytes_per_vertex,
-                               report.original_bytes_per_vertex));
+  text += line(
+      "", fmt::format("{:.2f} % of the drawn vertices eliminated; {:.2f} bytes per patch vertex, {:.2f} without groups",
+                      100.0 * report.geometry.eliminated(), report.grouped_bytes_per_vertex,
+                      report.original_bytes_per_vertex));
   text += line("", "drawn by groups: " + drawnByGroupsText(report.drawn_by_groups, report.grouping));
   return text;
 }
@@ -185,7 +186,7 @@ std::string benchJson(const BenchReport& report) {
   const Json json = {{"context", Json::parse(pipeline::toJson(report.context))},
                      {"grouping", groupingJson(report.grouping)},
                      {"triangles", report.triangles},
-                     {"vertices", report.vertices},
+                     {"patch_vertices", report.vertices},
                      {"eliminated_fraction", report.geometry.eliminated()},
                      {"drawn_by_groups_fraction", report.drawn_by_groups},
                      {"search_ms", report.geometry.search_ms},

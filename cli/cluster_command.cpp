@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/output.h"
+#include "cli/saved_file.h"
 #include "cli/view.h"
 #include "grouping/cluster_colors.h"
 #include "grouping/clusters_file.h"
@@ -31,6 +32,7 @@ void checkBeforehand(const ClusterRequest& request) {
 /// For a PLY or figures a mesh is as its file has it; a picture shows it as render does.
 scenes::Scene load(const ClusterRequest& request) {
   if (request.is_picture) return importScene(request);
+  refuseAsScene(request.input);
   scenes::ImportOptions import;
   import.for_drawing = false;
   return scenes::loadScene(request.input, import);
@@ -42,17 +44,18 @@ void writePly(const std::string& path, const Clustering& c) {
 }
 
 void drawClusters(const ClusterRequest& request, const Clustering& clustering, scenes::Scene scene, TaskPool& pool) {
-  Coloring coloring(clustering, request.cut.overlay, scene);
   const scenes::Camera camera = chooseUnfittedCamera(scene, request.view, request.aspect());
+  Box3 bounds = boundsOf(scene);
+  const pipeline::OverlayView view{scenes::fitClipPlanes(camera, bounds), request.size.height};
+  Coloring coloring(clustering, request.cut.overlay, view, scene);
   if (scene.lights.empty()) scenes::addDefaultLights(scene, camera);
   pipeline::RenderSettings settings;
   settings.width = request.size.width;
   settings.height = request.size.height;
   settings.background = backgroundOf(request, scene);
   settings.want_linear = settings.want_ids = true;
-  Box3 bounds = boundsOf(scene);
   pipeline::PreparedScene prepared = pipeline::prepareScene(std::move(scene), pool);
-  coloring.finish(prepared, bounds, pool);
+  coloring.finish(view, prepared, bounds, pool);
   pipeline::Frame frame;
   pipeline::Renderer(pool).render(prepared, scenes::fitClipPlanes(camera, bounds), settings, frame);
   coloring.apply(frame, pool);

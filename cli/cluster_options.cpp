@@ -79,10 +79,17 @@ void addClusterOptions(CLI::App& command, const std::shared_ptr<ClusterArguments
   command.add_option("INPUT", a.input, "A mesh file or builtin:NAME")->required();
   addCutOptions(command, a.cut);
   command
+      .add_option("--from", a.cut.from,
+                  "Take the hierarchy from a file that sheaf cluster --hierarchy has\nsaved of the same mesh")
+      ->type_name("FILE.sheaf");
+  command
       .add_option("-o,--output", a.output,
                   "The mesh in a colour per cluster: a PLY file, or a picture (PNG, JPEG,\nEXR ...) by the extension")
       ->type_name("FILE");
-  command.add_option("--hierarchy", a.hierarchy, "Save the whole hierarchy, as sheaf's own .sheaf file")
+  command
+      .add_option(
+          "--hierarchy", a.hierarchy,
+          "Save the whole hierarchy, as sheaf's own .sheaf file: for info, and for\n--from of cluster and render")
       ->type_name("FILE");
   command.add_flag("--json", a.json, "Report as JSON, warnings included");
   addPictureOptions(command, a);

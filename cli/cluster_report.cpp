@@ -38,8 +38,9 @@ std::string clusterText(const ClusterReport& report) {
   const CutRequest& cut = report.request.cut;
   const grouping::CostWeights& w = cut.weights;
   const bool made = cut.from.empty();
-  std::string text = line("mesh", fmt::format("{}: {} vertices, {} faces, {} component{}", report.name, report.vertices,
-                                              report.faces, report.components, report.components == 1 ? "" : "s"));
+  std::string text =
+      line("mesh", fmt::format("{}: {} surface vertices, {} faces, {} component{}", report.name, report.vertices,
+                               report.faces, report.components, report.components == 1 ? "" : "s"));
   text += line("cut", cutText(cut));
   text += line("clusters", fmt::format("{}", f.clusters));
   text += line("faces each", fmt::format("{} to {}, median {}, mean {:.1f}", f.least_faces, f.most_faces,
@@ -69,7 +70,7 @@ std::string clusterJson(const ClusterReport& report) {
   if (request.by == CutBy::kFaces) cut["max_faces"] = request.count;
   const Json json = {
       {"name", report.name},
-      {"vertices", report.vertices},
+      {"surface_vertices", report.vertices},
       {"faces", report.faces},
       {"components", report.components},
       {"extent", report.extent},

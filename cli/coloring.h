@@ -1,9 +1,8 @@
 // cli/coloring: a picture in which colours tell the parts of a surface apart, from the scene to the pixels.
 #pragma once
 
-#include <vector>
-
 #include "cli/cut_options.h"
+#include "cli/saved_groups.h"
 #include "cli/scene_options.h"
 #include "pipeline/triangle_colors.h"
 
@@ -15,13 +14,16 @@ enum class ColorBy { kCluster, kGroup, kPatch };
 class Coloring {
  public:
   /// Face clusters, neighbours in different colours. scene  that was clustered; loses its own colours
-  Coloring(const Clustering& clustering, const pipeline::Overlay& overlay, scenes::Scene& scene);
-  /// Groups or patches. scene  loses its own colours
+  Coloring(const Clustering& clustering, const pipeline::Overlay& overlay, const pipeline::OverlayView& view,
+           scenes::Scene& scene);
+  /// Saved groups, also where vertices are drawn in full. scene  loses its own colours
+  Coloring(const GroupsToDraw& groups, const pipeline::Overlay& overlay, scenes::Scene& scene);
+  /// Groups that are found on the way, or patches. scene  loses its own colours
   Coloring(ColorBy by, const pipeline::Overlay& overlay, scenes::Scene& scene);
 
-  /// Finds the colours of what was prepared from the scene and adds the overlay to it.
+  /// Finds the colours, if they were not known, of what was prepared from the scene and adds the overlay to it.
   /// bounds  of the scene; made to hold the overlay too
-  void finish(pipeline::PreparedScene& prepared, Box3& bounds, TaskPool& pool);
+  void finish(const pipeline::OverlayView& view, pipeline::PreparedScene& prepared, Box3& bounds, TaskPool& pool);
 
   /// Afterwards. frame  drawn with want_linear and want_ids
   void apply(pipeline::Frame& frame, TaskPool& pool) const { pipeline::colorPixels(colors_, frame, pool); }
@@ -29,8 +31,8 @@ class Coloring {
  private:
   ColorBy by_;
   pipeline::Overlay what_;
-  std::vector<mesh::Mesh> surfaces_;  // of groups and patches, until finish()
-  scenes::Scene overlay_;             // of clusters, until finish()
+  pipeline::SceneSurface surface_;  // of what is colored in finish(), until then
+  scenes::Scene overlay_;           // of clusters, until finish()
   pipeline::TriangleColors colors_;
 };
 

@@ -13,6 +13,7 @@
 #include "cli/console.h"
 #include "cli/difference_report.h"
 #include "cli/output.h"
+#include "cli/saved_file.h"
 #include "core/error.h"
 #include "raster/image_compare.h"
 #include "raster/image_io.h"
@@ -122,6 +123,7 @@ int runCompare(const CompareArguments& arguments, const CLI::App& command) {
   if (!output.empty()) checkPictureOutput(output);
   const Limits limits = understandLimits(arguments.limits);
   if (arguments.second) {
+    refuseAsScene(*arguments.second);
     refuseSceneOptions(command);
     return compareImages(arguments.scene.input, *arguments.second, output, limits, arguments.json);
   }

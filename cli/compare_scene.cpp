@@ -11,6 +11,7 @@
 #include "cli/console.h"
 #include "cli/html_page.h"
 #include "cli/output.h"
+#include "cli/saved_groups.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "raster/image_io.h"
@@ -24,7 +25,9 @@ constexpr UsualGrouping kUsualGrouping{pipeline::Grouping::kPlanar, pipeline::Pr
 constexpr int kDefaultViews = 8;
 
 void checkBeforehand(const SceneCompareRequest& request) {
-  checkOutputs({{"-o", request.output}, {"--report", request.report}}, inputFiles(request));
+  std::vector<std::string> inputs = inputFiles(request);
+  if (!request.saved_groups.empty()) inputs.push_back(request.saved_groups);
+  checkOutputs({{"-o", request.output}, {"--report", request.report}}, inputs);
   if (request.output.empty()) return;
   raster::checkFormatAvailable(request.output);
   const int width = 3 * request.size.width + 2 * pipeline::kSideBySideGapPx;
@@ -55,6 +58,7 @@ void addSceneCompareOptions(CLI::App& command, SceneCompareArguments& a) {
   addReportOption(command, a.report);
   addPictureOptions(command, a);
   addGroupingOptions(command, a.grouping, kUsualGrouping);
+  addSavedGroupsOption(command, a.grouping);
   addCameraOptions(command, a);
   command
       .add_option("--views", a.views,
@@ -69,6 +73,7 @@ void addSceneCompareOptions(CLI::App& command, SceneCompareArguments& a) {
 void understandSceneCompare(const SceneCompareArguments& arguments, SceneCompareRequest& request) {
   understandScene(arguments, request);
   request.grouping = understandGrouping(arguments.grouping, kUsualGrouping);
+  request.saved_groups = arguments.grouping.from.value_or("");
   request.report = understandReport(arguments.report);
   if (arguments.views) request.views = understandViews(*arguments.views, request.view);
 }
@@ -78,6 +83,8 @@ int compareScene(const SceneCompareRequest& request) {
   if (request.simd) forceSimdTarget(*request.simd);
   TaskPool pool(request.threads);
   scenes::Scene scene = importScene(request);
+  const pipeline::GroupingOptions grouping =
+      groupsToDrawWith(request.saved_groups, request.grouping, request, scene).options;
   if (!request.quiet && !request.json) printWarnings(scene.warnings);
   const std::vector<scenes::Camera> cameras =
       camerasOf(makeViews(scene, request.views, request.view, request.aspect(), kDefaultViews));
@@ -87,7 +94,10 @@ int compareScene(const SceneCompareRequest& request) {
   settings.height = request.size.height;
   settings.background = backgroundOf(request, scene);
   ComparisonReport report;
-  report.comparison = pipeline::compareGrouping(scene, cameras, request.grouping, settings, pool);
+  {
+    ProgressLine line("grouping", request.quiet);
+    report.comparison = pipeline::compareGrouping(scene, cameras, grouping, settings, pool, shownOn(line));
+  }
   report.context = contextOf(request, pool);
   report.triangles = scene.triangleCount();
   report.limited = !request.limits.none();

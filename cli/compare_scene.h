@@ -21,6 +21,7 @@ struct SceneCompareArguments : SceneArguments {
 /// The same, understood and checked.
 struct SceneCompareRequest : SceneRequest {
   pipeline::GroupingOptions grouping;
+  std::string saved_groups;  ///< a file to take groups from, else empty
   ViewsRequest views;
   Limits limits;       ///< of quality
   std::string output;  ///< original, grouped and heat map side by side; empty: not written

@@ -96,8 +96,8 @@ std::string comparisonPage(const ComparisonReport& report, TaskPool& pool) {
   const bool good = comparison.drawsRight() && report.beyond.empty();
   page.paragraph(fmt::format("Verdict: {}.", verdictText(report)), good ? Tone::kGood : Tone::kBad);
   std::vector<Card> cards = {
-      {fmt::format("{:.1f} %", 100.0 * comparison.geometry.eliminated()), "of the vertices eliminated"},
-      {fmt::format("{:.1f} %", 100.0 * comparison.drawn_by_groups), "of the patches' vertices drawn by groups"}};
+      {fmt::format("{:.1f} %", 100.0 * comparison.geometry.eliminated()), "of the drawn vertices eliminated"},
+      {fmt::format("{:.1f} %", 100.0 * comparison.drawn_by_groups), "of the patch vertices drawn by groups"}};
   for (const QualityFigure& figure : qualityFigures(comparison))
     if (figure.name == "differing pixels" || figure.name == "PSNR" || figure.name == "silhouette, mean")
       cards.push_back({figure.worst, figure.name + (comparison.views.size() > 1 ? ", worst view" : "")});

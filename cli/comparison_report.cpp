@@ -127,7 +127,8 @@ std::vector<std::pair<std::string, std::string>> geometryFacts(const Comparison&
   const pipeline::GeometricError& g = comparison.geometry;
   const double original = comparison.original_bytes_per_vertex;
   const double grouped = comparison.grouped_bytes_per_vertex;
-  return {{"eliminated", fmt::format("{:.2f} % ({} of {} vertices)", 100.0 * g.eliminated(), g.grouped, g.vertices)},
+  return {{"eliminated",
+           fmt::format("{:.2f} % ({} of {} drawn vertices in use)", 100.0 * g.eliminated(), g.grouped, g.vertices)},
           {"drawn by groups", drawnByGroupsText(comparison.drawn_by_groups, comparison.grouping)},
           {"displacement",
            fmt::format("max {:.3f} %, mean {:.3f} %, RMS {:.3f} % of the extent", 100.0 * g.displacement_max,
@@ -135,8 +136,8 @@ std::vector<std::pair<std::string, std::string>> geometryFacts(const Comparison&
           {"normal deviation", fmt::format("max {:.1f}, RMS {:.2f} degrees", degrees(g.normal_deviation_max_rad),
                                            degrees(g.normal_deviation_rms_rad))},
           {"faces", fmt::format("{} flipped, {} collapsed", g.flipped_faces, g.collapsed_faces)},
-          {"bytes per vertex", fmt::format("{:.2f} original, {:.2f} grouped ({:.0f} %)", original, grouped,
-                                           original > 0.0 ? 100.0 * grouped / original : 0.0)}};
+          {"bytes per vertex", fmt::format("{:.2f} original, {:.2f} grouped ({:.0f} %), by patch vertices", original,
+                                           grouped, original > 0.0 ? 100.0 * grouped / original : 0.0)}};
 }
 
 std::string verdictText(const ComparisonReport& report) {
@@ -176,7 +177,7 @@ std::string comparisonJson(const ComparisonReport& report) {
       {"beyond", report.beyond},
       {"worst_view", c.worst_view},
       {"views", std::move(views)},
-      {"vertices", g.vertices},
+      {"drawn_vertices", g.vertices},
       {"grouped_vertices", g.grouped},
       {"eliminated_fraction", g.eliminated()},
       {"drawn_by_groups_fraction", c.drawn_by_groups},

@@ -69,4 +69,11 @@ void ProgressLine::show(double done) {
   next_ns_ = nowNs() + kProgressPeriodNs;
 }
 
+std::function<bool(double done)> shownOn(ProgressLine& line) {
+  return [&line](double done) {
+    line.show(done);
+    return true;
+  };
+}
+
 }  // namespace sheaf::cli

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,5 +37,8 @@ class ProgressLine {
   bool shown_ = false;
   std::int64_t next_ns_;
 };
+
+/// For work that can be stopped, but is not. line  must live as long as the work
+std::function<bool(double done)> shownOn(ProgressLine& line);
 
 }  // namespace sheaf::cli

@@ -71,20 +71,17 @@ std::vector<CLI::Option*> addCutOptions(CLI::App& command, CutArguments& a) {
   const auto add = [&](const char* name, auto& value, const char* meaning, const char* type) {
     return command.add_option(name, value, meaning)->type_name(type);
   };
-  return {
-      add("--clusters", a.clusters, "Cut into so many clusters (default 64)", "N"),
-      add("--tolerance", a.tolerance,
-          "Cut into clusters that are this flat: 0.5% or 0.005 of the longest\nedge of the box", "T"),
-      add("--max-faces", a.max_faces, "Cut into clusters of at most so many faces", "N"),
-      add("--weights", a.weights,
-          "How much flatness, direction, roundness and balance count, 0 to 1000\neach (default 1,1,1,0.1)",
-          "FIT,DIR,SHAPE[,BALANCE]"),
-      add("--from", a.from, "Take the hierarchy from a file that sheaf cluster --hierarchy has\nsaved of the same mesh",
-          "FILE.sheaf"),
-      add("--overlay", a.overlay,
-          "Draw these too, as thin bars: boxes, planes or boxes,planes; of vertex\ngroups planes (or lines), of "
-          "patches boxes. The camera stays as it is",
-          "LIST")};
+  return {add("--clusters", a.clusters, "Cut into so many clusters (default 64)", "N"),
+          add("--tolerance", a.tolerance,
+              "Cut into clusters that are this flat: 0.5% or 0.005 of the longest\nedge of the box", "T"),
+          add("--max-faces", a.max_faces, "Cut into clusters of at most so many faces", "N"),
+          add("--weights", a.weights,
+              "How much flatness, direction, roundness and balance count, 0 to 1000\neach (default 1,1,1,0.1)",
+              "FIT,DIR,SHAPE[,BALANCE]"),
+          add("--overlay", a.overlay,
+              "Draw these too, as thin bars: boxes, planes or boxes,planes; of vertex\ngroups planes (or lines), of "
+              "patches boxes. The camera stays as it is",
+              "LIST")};
 }
 
 CutRequest understandCut(const CutArguments& arguments) {

@@ -44,7 +44,7 @@ struct CutRequest {
   pipeline::Overlay overlay;
 };
 
-/// Adds the options and returns them.
+/// Adds the options but --from, which is for the command to add, and returns them.
 std::vector<CLI::Option*> addCutOptions(CLI::App& command, CutArguments& arguments);
 
 /// Throws Error(kUsage) that names the option and the reason.

@@ -9,6 +9,7 @@
 #include "cli/group_report.h"
 #include "cli/interrupt.h"
 #include "cli/output.h"
+#include "cli/saved_file.h"
 #include "core/error.h"
 #include "grouping/cluster_patches.h"
 #include "grouping/groups_file.h"
@@ -60,13 +61,14 @@ int runGroup(GroupRequest request) {
     request.planar.planes = grouping::loadPlanes(request.plane_file);
     request.plane_set = fmt::format("{} planes of {}", request.planar.planes.size(), request.plane_file);
   }
+  refuseAsScene(request.input);
   scenes::ImportOptions import;
   import.for_drawing = false;
   const scenes::Scene scene = scenes::loadScene(request.input, import);
   const mesh::Mesh mesh = scenes::joinedMesh(scene);
 
   const InterruptGuard guard;
-  const grouping::VertexGroups groups = searchNamed(mesh, request, guard);
+  grouping::VertexGroups groups = searchNamed(mesh, request, guard);
   guard.endIfInterrupted();
   GroupReport report{.request = request,
                      .name = scene.name,
@@ -79,7 +81,10 @@ int runGroup(GroupRequest request) {
   for (const std::string& warning : groups.warnings)
     report.warnings.push_back(fmt::format("{}: {}", request.input, warning));
   if (!request.quiet && !request.json) printWarnings(report.warnings);
-  if (!request.output.empty()) grouping::saveGroups(request.output, groups, {.parameter_bits = request.saved_bits});
+  if (!request.output.empty()) {
+    groups.mesh_checksum = grouping::meshChecksum(mesh);
+    grouping::saveGroups(request.output, groups, {.parameter_bits = request.saved_bits});
+  }
   if (!request.snapped.empty()) scenes::writePly(request.snapped, grouping::snappedMesh(mesh, groups));
   writeStdout(request.json ? groupJson(report) : groupText(report));
   return 0;

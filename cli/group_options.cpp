@@ -31,6 +31,7 @@ constexpr const char* kFooter =
     "Examples:\n"
     "  sheaf group cow.off\n"
     "  sheaf group bunny.ply --metric quadric --epsilon 1% -o bunny.sheaf --snapped snapped.ply\n"
+    "  sheaf render bunny.ply --from bunny.sheaf --color-by group -o groups.png\n"
     "  sheaf group cow.off --method linear --segment-only --json\n"
     "  sheaf group builtin:teapot --planes dodecahedron --key dynamic\n"
     "\n";
@@ -106,7 +107,10 @@ void addGroupOptions(CLI::App& command, const std::shared_ptr<GroupArguments>& a
   GroupArguments& a = *arguments;
   command.add_option("INPUT", a.input, "A mesh file or builtin:NAME")->required();
   addSearchOptions(command, a);
-  command.add_option("-o,--output", a.output, "Save the groups, as sheaf's own .sheaf file")->type_name("FILE");
+  command
+      .add_option("-o,--output", a.output,
+                  "Save the groups, as sheaf's own .sheaf file: for info, and for --from of\nrender, compare and bench")
+      ->type_name("FILE");
   command.add_option("--bits", a.bits, "Quantise the saved parameters, 1 to 16 bits (default: exact floats)")
       ->type_name("N");
   command.add_option("--snapped", a.snapped, "Write the mesh with its vertices on their lines or planes, as .ply")

@@ -1,6 +1,7 @@
 // cli/group_report: what grouping has done to a mesh, for people and for programs.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,13 @@ struct GroupReport {
   grouping::CompressionFigures compression;
   std::vector<std::string> warnings;
 };
+
+/// `quadric metric, safe limit`
+std::string metricText(const grouping::VertexGroups& groups);
+
+/// What can be said without the mesh, for `sheaf group` and about saved groups: epsilon, counts, displacement, faces.
+std::string groupFacts(const grouping::VertexGroups& groups);
+nlohmann::ordered_json groupFactsJson(const grouping::VertexGroups& groups);
 
 /// A table of a dozen lines.
 std::string groupText(const GroupReport& report);

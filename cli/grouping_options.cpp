@@ -7,6 +7,27 @@
 
 namespace sheaf::cli {
 
+namespace {
+
+void understandForm(const GroupingArguments& arguments, const UsualGrouping& usual,
+                    pipeline::GroupingOptions& options) {
+  options.form = choose("--parameters", arguments.parameters.value_or("16bit"), kParameterNames);
+  options.prefer = arguments.prefer ? choose("--prefer", *arguments.prefer, kPreferNames) : usual.prefer;
+}
+
+std::string savedText(pipeline::Grouping method) {
+  switch (method) {
+    case pipeline::Grouping::kLinear:
+      return "saved groups on lines";
+    case pipeline::Grouping::kPlanar:
+      return "saved groups on planes across an axis";
+    default:
+      return "saved groups on planes across any direction";
+  }
+}
+
+}  // namespace
+
 std::array<CLI::Option*, 2> addMetricOptions(CLI::App& command, MetricArguments& a) {
   return {command
               .add_option("--metric", a.metric,
@@ -47,8 +68,27 @@ void addGroupingOptions(CLI::App& command, GroupingArguments& a, const UsualGrou
       "speed|memory");
 }
 
+void addSavedGroupsOption(CLI::App& command, GroupingArguments& a) {
+  command.add_option("--from", a.from, "Take the groups from a file that sheaf group -o has saved of the same mesh")
+      ->type_name("FILE.sheaf")
+      ->group("Groups");
+}
+
 pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments, const UsualGrouping& usual) {
   pipeline::GroupingOptions options;
+  if (arguments.from) {
+    if (arguments.from->empty()) throw Error(ErrorCode::kUsage, "--from: the name of the file is empty");
+    for (const auto& [given, option] : {std::pair{arguments.grouping.has_value(), "--grouping"},
+                                        {arguments.metric.metric.has_value(), "--metric"},
+                                        {arguments.metric.limit.has_value(), "--limit"},
+                                        {arguments.epsilon.has_value(), "--epsilon"}})
+      if (given)
+        throw Error(ErrorCode::kUsage, fmt::format("{} decides how groups are found, and --from takes groups that "
+                                                   "have been found",
+                                                   option));
+    understandForm(arguments, usual, options);
+    return options;
+  }
   options.method = arguments.grouping ? choose("--grouping", *arguments.grouping, kGroupingNames) : usual.method;
   if (options.method == pipeline::Grouping::kNone) {
     if (usual.method != pipeline::Grouping::kNone)
@@ -65,14 +105,15 @@ pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments,
   options.metric = choice.metric;
   options.limit = choice.limit;
   options.epsilon = parseFraction("--epsilon", arguments.epsilon.value_or("0.5%"));
-  options.form = choose("--parameters", arguments.parameters.value_or("16bit"), kParameterNames);
-  options.prefer = arguments.prefer ? choose("--prefer", *arguments.prefer, kPreferNames) : usual.prefer;
+  understandForm(arguments, usual, options);
   return options;
 }
 
 std::string groupingText(const pipeline::GroupingOptions& options) {
-  std::string text =
-      fmt::format("{} groups, {} metric", nameOf(options.method, kGroupingNames), nameOf(options.metric, kMetricNames));
+  std::string text = fmt::format(
+      "{}, {} metric",
+      options.saved ? savedText(options.method) : fmt::format("{} groups", nameOf(options.method, kGroupingNames)),
+      nameOf(options.metric, kMetricNames));
   if (options.metric == grouping::Metric::kQuadric)
     text += fmt::format(" with {} limit", nameOf(options.limit, kLimitNames));
   return text +
@@ -82,7 +123,7 @@ std::string groupingText(const pipeline::GroupingOptions& options) {
 }
 
 std::string drawnByGroupsText(double share, const pipeline::GroupingOptions& options) {
-  if (share > 0.0) return fmt::format("{:.1f} % of the patches' vertices", 100.0 * share);
+  if (share > 0.0) return fmt::format("{:.1f} % of the patch vertices", 100.0 * share);
   const bool chosen = options.method != pipeline::Grouping::kLinear && options.prefer == pipeline::Prefer::kSpeed;
   return chosen ? "no vertex, in full is faster here; --prefer memory draws by groups"
                 : "no vertex, no group has enough of a patch";
@@ -90,6 +131,7 @@ std::string drawnByGroupsText(double share, const pipeline::GroupingOptions& opt
 
 nlohmann::ordered_json groupingJson(const pipeline::GroupingOptions& options) {
   nlohmann::ordered_json json = {{"method", nameOf(options.method, kGroupingNames)},
+                                 {"saved", options.saved != nullptr},
                                  {"metric", nameOf(options.metric, kMetricNames)},
                                  {"limit", nullptr},
                                  {"epsilon", options.epsilon},

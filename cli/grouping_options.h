@@ -54,6 +54,7 @@ struct GroupingArguments {
   std::optional<std::string> epsilon;
   std::optional<std::string> parameters;
   std::optional<std::string> prefer;
+  std::optional<std::string> from;  ///< saved groups, in place of a search
 };
 
 /// What counts where nothing is asked for.
@@ -62,16 +63,21 @@ struct UsualGrouping {
   pipeline::Prefer prefer = pipeline::Prefer::kSpeed;
 };
 
+/// All but --from.
 void addGroupingOptions(CLI::App& command, GroupingArguments& arguments, const UsualGrouping& usual);
 
+/// --from, of commands that take nothing but groups from a file.
+void addSavedGroupsOption(CLI::App& command, GroupingArguments& arguments);
+
 /// By distance, epsilon 0.5 %, unless asked otherwise. Throws Error(kUsage) that names the option; also for kNone where
-/// it is not `usual`: without groups there is nothing to compare.
+/// it is not `usual`: without groups there is nothing to compare. With --from only form and preference are understood:
+/// the rest says the file (groupsToDrawWith()).
 pipeline::GroupingOptions understandGrouping(const GroupingArguments& arguments, const UsualGrouping& usual);
 
 /// `planar groups, distance metric, epsilon 0.5 %, 16-bit parameters`
 std::string groupingText(const pipeline::GroupingOptions& options);
 
-/// `63.1 % of the patches' vertices`, or why there are none.
+/// `63.1 % of the patch vertices`, or why there are none.
 std::string drawnByGroupsText(double share, const pipeline::GroupingOptions& options);
 
 nlohmann::ordered_json groupingJson(const pipeline::GroupingOptions& options);

@@ -12,6 +12,7 @@
 #include "cli/console.h"
 #include "cli/output.h"
 #include "cli/render_options.h"
+#include "cli/saved_groups.h"
 #include "cli/view.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -33,7 +34,8 @@ void checkBeforehand(const RenderRequest& request) {
   if (request.output == "-" && isatty(STDOUT_FILENO))
     throw Error(ErrorCode::kUsage, "-o -: standard output is a terminal; redirect it");
   std::vector<std::string> inputs = inputFiles(request);
-  if (!request.cut.from.empty()) inputs.push_back(request.cut.from);
+  for (const std::string& saved : {request.cut.from, request.saved_groups})
+    if (!saved.empty()) inputs.push_back(saved);
   checkOutputs({{"-o", request.output}, {"--timings", request.timings_file}, {"--trace", request.trace_file}}, inputs);
   if (!request.output.empty() && request.output != "-") raster::checkFormatAvailable(request.output);
 }
@@ -78,10 +80,13 @@ void writeReports(const RenderRequest& request, const pipeline::RunTimes& run, c
 }
 
 /// Before the scene is prepared; takes the scene's colours.
-std::optional<Coloring> beginColoring(const RenderRequest& request, scenes::Scene& scene, TaskPool& pool) {
+std::optional<Coloring> beginColoring(const RenderRequest& request, const GroupsToDraw& groups,
+                                      const pipeline::OverlayView& view, scenes::Scene& scene, TaskPool& pool) {
   if (!request.color_by) return std::nullopt;
+  if (request.color_by == ColorBy::kGroup && groups.options.saved) return Coloring(groups, request.cut.overlay, scene);
   if (request.color_by != ColorBy::kCluster) return Coloring(*request.color_by, request.cut.overlay, scene);
-  return Coloring(clusterScene(request.cut, scene, request.input, request.view.z_up, pool), request.cut.overlay, scene);
+  return Coloring(clusterScene(request.cut, scene, request.input, request.view.z_up, pool), request.cut.overlay, view,
+                  scene);
 }
 
 int runRender(const RenderRequest& request) {
@@ -92,7 +97,11 @@ int runRender(const RenderRequest& request) {
   TaskPool pool(request.threads);
 
   scenes::Scene scene;
-  run.import = pipeline::timePhase([&] { scene = importScene(request); });
+  GroupsToDraw groups;
+  run.import = pipeline::timePhase([&] {
+    scene = importScene(request);
+    groups = groupsToDrawWith(request.saved_groups, request.grouping, request, scene);
+  });
   if (!request.quiet) printWarnings(scene.warnings);
   scenes::Camera camera = chooseUnfittedCamera(scene, request.view, request.aspect());
   if (scene.lights.empty()) scenes::addDefaultLights(scene, camera);
@@ -112,14 +121,16 @@ int runRender(const RenderRequest& request) {
   Box3 bounds = boundsOf(scene);
   std::optional<Coloring> coloring;
   run.prepare = pipeline::timePhase([&] {
-    coloring = beginColoring(request, scene, pool);
-    prepared = pipeline::prepareScene(std::move(scene), pool, request.grouping);
-    if (coloring) coloring->finish(prepared, bounds, pool);
+    const pipeline::OverlayView view{scenes::fitClipPlanes(camera, bounds), request.size.height};
+    coloring = beginColoring(request, groups, view, scene, pool);
+    ProgressLine line("grouping", request.quiet);
+    prepared = pipeline::prepareScene(std::move(scene), pool, groups.options, shownOn(line));
+    if (coloring) coloring->finish(view, prepared, bounds, pool);
   });
   camera = scenes::fitClipPlanes(camera, bounds);
-  if (request.grouping.method != pipeline::Grouping::kNone && pipeline::shareDrawnByGroups(prepared) == 0.0)
+  if (groups.options.method != pipeline::Grouping::kNone && pipeline::shareDrawnByGroups(prepared) == 0.0)
     prepared.warnings.push_back(
-        fmt::format("{}: groups draw {}", request.input, drawnByGroupsText(0.0, request.grouping)));
+        fmt::format("{}: groups draw {}", request.input, drawnByGroupsText(0.0, groups.options)));
   if (!request.quiet) printWarnings(prepared.warnings);
 
   pipeline::Renderer renderer(pool);

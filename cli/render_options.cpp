@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cli/commands.h"
+#include "cli/saved_file.h"
 #include "core/error.h"
 #include "raster/image_io.h"
 
@@ -27,6 +28,11 @@ constexpr const char* kFooter =
     "have\n"
     "few vertices of a patch, vertices are drawn in full and the surface stays white.\n"
     "\n"
+    "Saved groups (--from) are drawn as they are: --grouping, --metric, --limit and --epsilon were theirs to choose.\n"
+    "Every instance is then a mesh of its own. --color-by group shows them, drawn by planes or in full: a triangle\n"
+    "has the colour of the group that two of its corners are in, or stays white. A saved file is taken only for the\n"
+    "mesh that it was made of.\n"
+    "\n"
     "Examples:\n"
     "  sheaf render model.glb -o model.png\n"
     "  sheaf render part.stl --up z --view front --orthographic -o part.png --background transparent\n"
@@ -35,6 +41,7 @@ constexpr const char* kFooter =
     "  sheaf render model.glb -o model.exr --channels depth,ids\n"
     "  sheaf render builtin:terrain --frames 50 --timings=times.json --trace trace.json\n"
     "  sheaf render scan.ply --grouping planar --epsilon 0.1% -o grouped.png --timings\n"
+    "  sheaf render scan.ply --from groups.sheaf --color-by group -o groups.png\n"
     "  sheaf render scan.ply --color-by cluster --tolerance 1% --overlay planes -o clusters.png\n"
     "  sheaf render scan.ply --grouping cluster --color-by group --overlay planes -o groups.png\n"
     "\n";
@@ -81,17 +88,19 @@ void refuseIdleColorOptions(const RenderArguments& arguments, const RenderReques
   for (const auto& [given, option] : {std::pair{cut.clusters.has_value(), "--clusters"},
                                       {cut.tolerance.has_value(), "--tolerance"},
                                       {cut.max_faces.has_value(), "--max-faces"},
-                                      {cut.weights.has_value(), "--weights"},
-                                      {cut.from.has_value(), "--from"}})
+                                      {cut.weights.has_value(), "--weights"}})
     if (given && request.color_by != ColorBy::kCluster)
       refuse(fmt::format("{} is about face clusters: add --color-by cluster", option));
+  if (cut.from && request.color_by != ColorBy::kCluster)
+    refuse(fmt::format("--from {} holds face clusters: add --color-by cluster", *cut.from));
   if (cut.overlay && !request.color_by) refuse("--overlay is drawn over parts of a surface: say with --color-by which");
   if (request.color_by == ColorBy::kPatch && request.cut.overlay.planes)
     refuse("--overlay planes: patches have boxes only");
   if (request.color_by == ColorBy::kGroup && request.cut.overlay.boxes)
     refuse("--overlay boxes: vertex groups have planes (or lines) only");
-  if (request.color_by == ColorBy::kGroup && request.grouping.method == pipeline::Grouping::kNone)
-    refuse("--color-by group: there are no vertex groups: add --grouping planar, linear or cluster");
+  if (request.color_by == ColorBy::kGroup && request.grouping.method == pipeline::Grouping::kNone &&
+      request.saved_groups.empty())
+    refuse("--color-by group: there are no vertex groups: add --grouping planar, linear or cluster, or --from");
 }
 
 void understandColors(const RenderArguments& arguments, RenderRequest& request) {
@@ -101,6 +110,14 @@ void understandColors(const RenderArguments& arguments, RenderRequest& request) 
     request.grouping.prefer = pipeline::Prefer::kMemory;
   request.cut = understandCut(arguments.cut);
   refuseIdleColorOptions(arguments, request);
+}
+
+/// The kind of the saved file decides what it is taken for.
+void sortSavedFile(RenderArguments& arguments) {
+  if (!arguments.from) return;
+  if (arguments.from->empty()) refuse("--from: the name of the file is empty");
+  const bool has_groups = savedKindOf(*arguments.from) == SavedKind::kVertexGroups;
+  (has_groups ? arguments.grouping.from : arguments.cut.from) = arguments.from;
 }
 
 void addColorOptions(CLI::App& command, RenderArguments& a) {
@@ -147,18 +164,26 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
   addPictureOptions(command, a);
   addCameraOptions(command, a);
   addGroupingOptions(command, a.grouping, {});
+  command
+      .add_option("--from", a.from,
+                  "Take vertex groups that sheaf group -o has saved of the same mesh, or\nface clusters (with "
+                  "--color-by cluster) of sheaf cluster --hierarchy")
+      ->type_name("FILE.sheaf")
+      ->group("Groups");
   addColorOptions(command, a);
   addMeasuringOptions(command, a);
   command.footer(std::string(kFooter) + kExitCodes);
 }
 
-RenderRequest understand(const RenderArguments& arguments) {
+RenderRequest understand(RenderArguments arguments) {
   RenderRequest request;
+  sortSavedFile(arguments);
   understandScene(arguments, request);
   understandMeasuring(arguments, request);
   understandOutput(arguments, request);
   if (arguments.no_patch_culling) request.culling = pipeline::Culling::kNone;
   request.grouping = understandGrouping(arguments.grouping, {});
+  request.saved_groups = arguments.grouping.from.value_or("");
   understandColors(arguments, request);
   return request;
 }

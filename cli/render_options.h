@@ -21,6 +21,7 @@ struct RenderArguments : SceneArguments {
   bool no_patch_culling = false;
   GroupingArguments grouping;
   Text color_by;
+  Text from;  ///< of groups or clusters: the kind of the file decides
   CutArguments cut;
   Text channels;
   std::string timings;  ///< kBareTimings, a file, or empty
@@ -33,6 +34,7 @@ struct RenderRequest : SceneRequest {
   std::string output;  ///< "-": PNG to stdout; empty: nothing is written
   pipeline::Culling culling = pipeline::Culling::kTree;
   pipeline::GroupingOptions grouping;
+  std::string saved_groups;  ///< a file to take groups from, else empty
   std::optional<ColorBy> color_by;
   CutRequest cut;  ///< of kCluster; its overlay of all
   bool want_depth = false;
@@ -47,6 +49,6 @@ struct RenderRequest : SceneRequest {
 void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>& arguments);
 
 /// Throws Error(kUsage) that names the option and the reason.
-RenderRequest understand(const RenderArguments& arguments);
+RenderRequest understand(RenderArguments arguments);
 
 }  // namespace sheaf::cli

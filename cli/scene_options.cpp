@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/build_info.h"
+#include "cli/saved_file.h"
 #include "core/error.h"
 #include "raster/srgb.h"
 #include "scenes/camera.h"
@@ -86,7 +87,7 @@ void addPictureOptions(CLI::App& command, SceneArguments& a) {
       ->type_name("N");
   command.add_option("--simd", a.simd, "Use this SIMD target (see sheaf --version);\nthe image does not depend on it")
       ->type_name("NAME");
-  command.add_flag("-q,--quiet", a.quiet, "No warnings on stderr");
+  command.add_flag("-q,--quiet", a.quiet, "No warnings and no progress on stderr");
 }
 
 void addCameraOptions(CLI::App& command, SceneArguments& a) {
@@ -147,6 +148,7 @@ std::vector<std::string> inputFiles(const SceneRequest& request) {
 scenes::Scene importScene(const SceneRequest& request) {
   scenes::ImportOptions options;
   options.z_up = request.view.z_up;
+  refuseAsScene(request.input);
   if (request.crease_angle_rad) options.crease_angle_rad = *request.crease_angle_rad;
   return scenes::loadScene(request.input, options);
 }

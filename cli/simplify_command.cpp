@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/output.h"
+#include "cli/saved_file.h"
 #include "cli/values.h"
 #include "core/error.h"
 #include "core/stage_timer.h"
@@ -117,7 +118,7 @@ std::string simplifyText(const SimplifyReport& report) {
     return fmt::format("{:<12}{}\n", head, text);
   };
   std::string text = line("mesh", report.name);
-  text += line("vertices", fmt::format("{} to {}", report.vertices_before, after.vertexCount()) +
+  text += line("vertices", fmt::format("{} joined vertices in use to {}", report.vertices_before, after.vertexCount()) +
                                (report.result.positions != after.vertexCount()
                                     ? fmt::format(" at {} places", report.result.positions)
                                     : ""));
@@ -153,6 +154,7 @@ std::string simplifyJson(const SimplifyReport& report) {
 int runSimplify(const SimplifyRequest& request) {
   const bool is_file = !request.input.starts_with("builtin:");
   checkOutputs({{"-o", request.output}}, is_file ? std::vector{request.input} : std::vector<std::string>{});
+  refuseAsScene(request.input);
   scenes::ImportOptions import;
   import.for_drawing = false;
   const scenes::Scene scene = scenes::loadScene(request.input, import);

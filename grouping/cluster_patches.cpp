@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -117,26 +118,37 @@ Pieces cutIntoPieces(const Mesh& mesh, const FaceClusters& clusters, const Patch
   return maker.finish();
 }
 
-// Two pieces are neighbours if a triangle of one shares an edge with one of the other.
-void findNeighbours(const Mesh& mesh, Pieces& pieces) {
-  std::vector<std::uint32_t> piece_of_face(mesh.triangleCount(), kNoIndex);
+// Pairs of faces that share an edge.
+using FaceLinks = std::vector<std::array<std::uint32_t, 2>>;
+
+FaceLinks linksOf(const DualGraph& graph) {
+  FaceLinks links;
+  links.reserve(graph.edges.size());
+  for (const DualEdge& e : graph.edges) links.push_back(e.face);
+  return links;
+}
+
+// Two pieces are neighbours if a face of one is linked to one of the other.
+void findNeighbours(std::size_t face_count, const FaceLinks& links, Pieces& pieces) {
+  std::vector<std::uint32_t> piece_of_face(face_count, kNoIndex);
   for (std::uint32_t p = 0; p < pieces.size(); ++p)
     for (const std::uint32_t f : pieces.trianglesOf(p)) piece_of_face[f] = p;
-  std::vector<std::array<std::uint32_t, 2>> links;
-  for (const DualEdge& e : buildDualGraph(mesh, modelFrameOf(mesh)).edges) {
-    const std::uint32_t a = piece_of_face[e.face[0]], b = piece_of_face[e.face[1]];
-    if (a == b || a == kNoIndex || b == kNoIndex) continue;
-    links.push_back({a, b});
-    links.push_back({b, a});
+  FaceLinks between;  // pieces, with repetition
+  for (const auto& [f, g] : links) {
+    const std::uint32_t a = piece_of_face[f], b = piece_of_face[g];
+    if (a != b && a != kNoIndex && b != kNoIndex) between.push_back({a, b});
   }
-  std::ranges::sort(links);
-  links.erase(std::unique(links.begin(), links.end()), links.end());
-  pieces.first_neighbour.assign(pieces.size() + 1, 0);
-  for (const auto& [a, b] : links) {
-    ++pieces.first_neighbour[a + 1];
-    pieces.neighbours.push_back(b);
+  std::vector<std::uint32_t> end(pieces.size() + 1, 0), all(2 * between.size());  // in runs by piece
+  for (const auto& [a, b] : between) ++end[a + 1], ++end[b + 1];
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  for (const auto& [a, b] : between) all[end[a]++] = b, all[end[b]++] = a;  // moves each start on to the run's end
+  pieces.first_neighbour.assign(1, 0);
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    const auto run = std::span(all).subspan(p == 0 ? 0 : end[p - 1], end[p] - (p == 0 ? 0 : end[p - 1]));
+    std::ranges::sort(run);
+    std::ranges::unique_copy(run, std::back_inserter(pieces.neighbours));
+    pieces.first_neighbour.push_back(static_cast<std::uint32_t>(pieces.neighbours.size()));
   }
-  for (std::size_t p = 0; p < pieces.size(); ++p) pieces.first_neighbour[p + 1] += pieces.first_neighbour[p];
 }
 
 // Grows one patch after the other, each from the first piece that is left.
@@ -223,25 +235,33 @@ void append(const PatchCut& part, PatchCut& cut) {
   cut.triangles.insert(cut.triangles.end(), part.triangles.begin(), part.triangles.end());
 }
 
-}  // namespace
-
-PatchSet clusterPatches(const Mesh& mesh, const Mesh& surface, const FaceClusters& clusters, const PatchLimits& limits,
-                        TaskPool& pool) {
-  assert(clusters.faceCount() == mesh.triangleCount() && surface.triangleCount() == mesh.triangleCount());
+PatchSet growPatches(const Mesh& mesh, const FaceClusters& clusters, const FaceLinks& links, const PatchLimits& limits,
+                     TaskPool& pool) {
   std::vector<std::uint32_t> crumbs;
   Pieces pieces = cutIntoPieces(mesh, clusters, limits, crumbs);
-  findNeighbours(surface, pieces);
+  findNeighbours(mesh.triangleCount(), links, pieces);
   PatchCut cut = PatchGrower(pieces, limits).grow();
   pieces = {};
   append(splitByPlace(mesh, std::move(crumbs), limits, pool), cut);
   return writePatches(mesh, cut, pool);
 }
 
+}  // namespace
+
+PatchSet clusterPatches(const Mesh& mesh, const Mesh& surface, const FaceClusters& clusters, const PatchLimits& limits,
+                        TaskPool& pool) {
+  assert(clusters.faceCount() == mesh.triangleCount() && surface.triangleCount() == mesh.triangleCount());
+  return growPatches(mesh, clusters, linksOf(buildDualGraph(surface, modelFrameOf(surface))), limits, pool);
+}
+
 PatchSet clusterPatches(const Mesh& mesh, const PatchLimits& limits, TaskPool& pool) {
   ClusterOptions options;
   options.min_shape_faces = std::numeric_limits<std::uint32_t>::max();  // patches get bounds of their own
   const Mesh surface = mesh::surfaceOf(mesh);
-  return clusterPatches(mesh, surface, clusterFaces(surface, options, pool), limits, pool);
+  const ModelFrame frame = modelFrameOf(surface);
+  DualGraph graph = buildDualGraph(surface, frame);
+  const FaceLinks links = linksOf(graph);
+  return growPatches(mesh, clusterFaces(surface, frame, std::move(graph), options, pool), links, limits, pool);
 }
 
 }  // namespace sheaf::grouping

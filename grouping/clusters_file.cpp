@@ -17,7 +17,7 @@
 namespace sheaf::grouping {
 namespace {
 
-constexpr FileKind kFileKind = {"SHEAFCLU", kClustersFileVersion, "face clusters"};
+constexpr FileKind kFileKind = {kClustersFileMagic, kClustersFileVersion, "face clusters"};
 
 // Padding would write bytes of no meaning, and other ones each time.
 static_assert(sizeof(ClusterShape) == 27 * sizeof(float));
@@ -72,7 +72,8 @@ std::string encodeContent(const FaceClusters& clusters, const mesh::Mesh& mesh) 
 // memory is taken for them.
 class Decoder {
  public:
-  Decoder(std::string_view content, const mesh::Mesh& mesh, std::string_view name)
+  // mesh  nullptr: not held against one
+  Decoder(std::string_view content, const mesh::Mesh* mesh, std::string_view name)
       : in_(content), mesh_(mesh), name_(name) {}
 
   FaceClusters decode() {
@@ -80,7 +81,7 @@ class Decoder {
     merges_ = in_.get<std::uint32_t>();
     const auto checksum = in_.get<std::uint32_t>();
     if (std::uint64_t{faces_} + 2 * std::uint64_t{merges_} > in_.left() / 4) fail("more faces than bytes");
-    checkMesh(checksum);
+    if (mesh_ != nullptr) checkMesh(checksum);
     std::vector<std::array<std::uint32_t, 2>> children = getChildren();
     std::vector<float> cost(merges_);
     in_.getAll(std::span(cost));
@@ -102,9 +103,9 @@ class Decoder {
     const auto refuse = [&](std::string_view reason) {
       throw Error(ErrorCode::kBadInput, fmt::format("{}: belongs to another mesh: {}", name_, reason));
     };
-    if (faces_ != mesh_.triangleCount())
-      refuse(fmt::format("its clusters are of {} faces, the mesh has {}", faces_, mesh_.triangleCount()));
-    if (checksum != checksumOf(mesh_)) refuse("as many faces, but other corners");
+    if (faces_ != mesh_->triangleCount())
+      refuse(fmt::format("its clusters are of {} faces, the mesh has {}", faces_, mesh_->triangleCount()));
+    if (checksum != checksumOf(*mesh_)) refuse("as many faces, but other corners");
   }
 
   std::vector<std::array<std::uint32_t, 2>> getChildren() {
@@ -132,11 +133,9 @@ class Decoder {
     if (count > in_.left() / sizeof(ClusterShape)) fail("more shapes than bytes");
     out.shapes.resize(count);
     in_.getAll(std::span(out.shapes));
-    const Box3 box = finiteBounds(mesh_);
-    for (std::uint32_t i = 0; i < count; ++i) {
+    for (std::uint32_t i = 0; i < count; ++i)
       if (!isSound(out.shapes[i])) fail(fmt::format("shape {} is not possible", i));
-      if (!isAround(out.shapes[i], box)) fail(fmt::format("shape {} is not where the mesh is", i));
-    }
+    if (mesh_ != nullptr) checkPlaces(out.shapes);
     // The bits stand in the order of the merges, the shapes depth first.
     std::uint32_t next = 0;
     walkDown(out, [&](std::uint32_t node) {
@@ -145,8 +144,14 @@ class Decoder {
     });
   }
 
+  void checkPlaces(std::span<const ClusterShape> shapes) const {
+    const Box3 box = finiteBounds(*mesh_);
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+      if (!isAround(shapes[i], box)) fail(fmt::format("shape {} is not where the mesh is", i));
+  }
+
   ByteReader in_;
-  const mesh::Mesh& mesh_;
+  const mesh::Mesh* mesh_;
   std::string_view name_;
   std::uint32_t faces_ = 0;
   std::uint32_t merges_ = 0;
@@ -161,7 +166,11 @@ std::string encodeClusters(const FaceClusters& clusters, const mesh::Mesh& mesh)
 }
 
 FaceClusters decodeClusters(std::string_view bytes, const mesh::Mesh& mesh, std::string_view name) {
-  return Decoder(unsealed(kFileKind, bytes, name), mesh, name).decode();
+  return Decoder(unsealed(kFileKind, bytes, name), &mesh, name).decode();
+}
+
+FaceClusters decodeClusters(std::string_view bytes, std::string_view name) {
+  return Decoder(unsealed(kFileKind, bytes, name), nullptr, name).decode();
 }
 
 void saveClusters(const std::filesystem::path& path, const FaceClusters& clusters, const mesh::Mesh& mesh) {

@@ -1,5 +1,5 @@
 // grouping/clusters_file: a hierarchy of face clusters as a file, conventionally *.sheaf.
-//   Form   sealed_file.h with magic "SHEAFCLU". Numbers of faces and merges; CRC-32 of the places of the faces'
+//   Form   sealed_file.h with kClustersFileMagic. Numbers of faces and merges; CRC-32 of the places of the faces'
 //          corners; for each node 2 * its merge + its side there, 2^32 - 1 of a root; the merges' costs; a bit for each
 //          merge that has a shape; the shapes
 //   Keeps  loading what was saved gives an equal value
@@ -16,6 +16,7 @@
 
 namespace sheaf::grouping {
 
+inline constexpr std::string_view kClustersFileMagic = "SHEAFCLU";
 inline constexpr std::uint32_t kClustersFileVersion = 2;
 
 /// mesh  that the clusters were made of. Asserts that every merge has a shape number, as clusterFaces() gives it.
@@ -24,6 +25,9 @@ std::string encodeClusters(const FaceClusters& clusters, const mesh::Mesh& mesh)
 /// name  for the message of the Error(kBadInput) that refuses damaged bytes and clusters of another mesh;
 ///       Error(kUnsupported) for another version
 FaceClusters decodeClusters(std::string_view bytes, const mesh::Mesh& mesh, std::string_view name);
+/// The same without the mesh, which is not asked whether it has these faces and whether boxes are where it is: to look
+/// at the hierarchy, not to use it.
+FaceClusters decodeClusters(std::string_view bytes, std::string_view name);
 
 /// Throws Error(kBadInput) if the file cannot be written.
 void saveClusters(const std::filesystem::path& path, const FaceClusters& clusters, const mesh::Mesh& mesh);

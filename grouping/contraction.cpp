@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <numeric>
 #include <unordered_map>
 #include <utility>
 
@@ -10,9 +9,6 @@
 
 namespace sheaf::grouping {
 namespace {
-
-using mesh::Mesh;
-using mesh::Triangle;
 
 // A cluster as long as it lives. When it is merged into another one, what made that merge is noted here in place of its
 // neighbours: there are as many merges as clusters that vanish.
@@ -26,38 +22,28 @@ struct Slot : ClusterMoments {
 };
 static_assert(sizeof(Slot) == 184);
 
-Slot slotOfFace(const Mesh& mesh, const ModelFrame& frame, std::uint32_t face, bool turned) {
-  Slot slot{};
-  const Triangle& t = mesh.triangles[face];
-  if (hasFiniteCorners(mesh, t)) {
-    double perimeter = 0.0;
-    const TriangleEdges e = edgesOf(t);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(e.count); ++i)
-      perimeter += glm::length(frame(mesh.positions[e.edges[i][0]]) - frame(mesh.positions[e.edges[i][1]]));
-    static_cast<ClusterMoments&>(slot) =
-        momentsOfFace(frame(mesh.positions[t[0]]), frame(mesh.positions[t[1]]), frame(mesh.positions[t[2]]), perimeter);
-    if (turned) slot.area_vector = -slot.area_vector;
-  }
-  slot.node = face;
-  slot.first = slot.mark = kNoIndex;
-  return slot;
-}
-
 class Contraction {
  public:
-  Contraction(const Mesh& mesh, const ModelFrame& frame, DualGraph graph, const std::vector<bool>& turned,
-              const CostWeights& weights, std::size_t region_edges)
+  Contraction(DualGraph graph, std::uint32_t own, const MomentsOf& moments_of, const CostWeights& weights)
       : weights_(weights),
+        own_(own),
         edges_(std::move(graph.edges)),
-        slots_(makeSlots(mesh, frame, std::exchange(graph.first, {}), turned)),
-        queue_(edges_, region_edges, [this](const DualEdge& e) { return costOf(e); }) {
+        slots_(makeSlots(std::exchange(graph.first, {}), moments_of)),
+        queue_(edges_, [this](const DualEdge& e) { return costOf(e); }),
+        waits_(slots_.size(), false) {
     for (const DualEdge& e : edges_) ++slots_[e.face[0]].degree, ++slots_[e.face[1]].degree;
+    std::fill(waits_.begin() + own_, waits_.end(), true);
   }
 
   void run() {
     while (queue_.prepareTop()) {
       const std::uint32_t id = queue_.top();
       const DualEdge& e = edges_[id];
+      if (waits_[e.face[0]] || waits_[e.face[1]]) {
+        waits_[e.face[0]] = waits_[e.face[1]] = true;
+        queue_.pop();
+        continue;
+      }
       if (isHub(slots_[e.face[0]]) || isHub(slots_[e.face[1]])) {
         queue_.update(id, costOf(e));
         if (!queue_.prepareTop() || queue_.top() != id) continue;
@@ -66,8 +52,31 @@ class Contraction {
     }
   }
 
+  // Nothing else can be asked for afterwards.
   MergeTree takeTree() {
     std::vector<DualEdge>().swap(edges_);  // makes room
+    return tree();
+  }
+
+  ContractedPart takePart() {
+    ContractedPart part;
+    part.tree = tree();
+    std::vector<std::uint32_t> number(slots_.size());  // of what is left; the halo keeps its distance from own_
+    for (std::uint32_t s = 0; s < own_; ++s) {
+      if (slots_[s].hasVanished()) continue;
+      number[s] = static_cast<std::uint32_t>(part.node.size());
+      part.node.push_back(slots_[s].node);
+      part.moments.push_back(slots_[s]);
+    }
+    const auto left = static_cast<std::uint32_t>(part.node.size());
+    for (auto s = own_; s < slots_.size(); ++s) number[s] = left + (s - own_);
+    for (const DualEdge& e : edges_)
+      if (e.length != kContracted) part.links.push_back({{number[e.face[0]], number[e.face[1]]}, e.length});
+    return part;
+  }
+
+ private:
+  MergeTree tree() const {
     MergeTree tree;
     tree.children.resize(merges_);
     tree.cost.resize(merges_);
@@ -79,13 +88,13 @@ class Contraction {
     return tree;
   }
 
- private:
-  static std::vector<Slot> makeSlots(const Mesh& mesh, const ModelFrame& frame, const std::vector<std::uint32_t>& first,
-                                     const std::vector<bool>& turned) {
-    std::vector<Slot> slots(mesh.triangleCount());
-    for (std::uint32_t f = 0; f < slots.size(); ++f) {
-      slots[f] = slotOfFace(mesh, frame, f, !turned.empty() && turned[f]);
-      slots[f].first = first[f];
+  static std::vector<Slot> makeSlots(const std::vector<std::uint32_t>& first, const MomentsOf& moments_of) {
+    std::vector<Slot> slots(first.size());
+    for (std::uint32_t i = 0; i < slots.size(); ++i) {
+      static_cast<ClusterMoments&>(slots[i]) = moments_of(i);
+      slots[i].node = i;
+      slots[i].first = first[i];
+      slots[i].mark = kNoIndex;
     }
     return slots;
   }
@@ -133,7 +142,7 @@ class Contraction {
     gone.first = std::exchange(gone.node, kept.node);
     gone.degree = merges_;
     gone.mark = cost;
-    kept.node = static_cast<std::uint32_t>(slots_.size()) + merges_++;
+    kept.node = own_ + merges_++;
     evaluateAround(a);
     for (const std::uint32_t slot : former_hubs_)
       if (slot != a && !slots_[slot].hasVanished()) evaluateAround(slot);
@@ -211,50 +220,30 @@ class Contraction {
   }
 
   const CostWeights weights_;
+  const std::uint32_t own_;
   std::vector<DualEdge> edges_;
   std::vector<Slot> slots_;
   MergeQueue queue_;
+  std::vector<bool> waits_;                              // clusters whose next merge cannot be made here
   std::unordered_map<std::uint32_t, double> evaluated_;  // corners of a hub when its edges were last evaluated
   std::vector<std::uint32_t> former_hubs_;               // in this merge
   std::uint32_t merges_ = 0;
 };
 
-// Numbers merges as if they had been made in the order of their costs; none before the merges that made its parts.
-void sortByCost(std::uint32_t face_count, MergeTree& tree) {
-  const auto merges = static_cast<std::uint32_t>(tree.children.size());
-  std::vector<float> worst = tree.cost;  // of the merge and all below it
-  for (std::uint32_t i = 0; i < merges; ++i)
-    for (const std::uint32_t child : tree.children[i])
-      if (child >= face_count) worst[i] = std::max(worst[i], worst[child - face_count]);
-  std::vector<std::uint32_t> order(merges), rank(merges);
-  std::iota(order.begin(), order.end(), 0U);
-  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return worst[a] < worst[b]; });
-  for (std::uint32_t i = 0; i < merges; ++i) rank[order[i]] = i;
-  MergeTree sorted;
-  for (const std::uint32_t merge : order) {
-    auto [a, b] = tree.children[merge];
-    if (a >= face_count) a = face_count + rank[a - face_count];
-    if (b >= face_count) b = face_count + rank[b - face_count];
-    sorted.children.push_back({std::min(a, b), std::max(a, b)});
-    sorted.cost.push_back(tree.cost[merge]);
-  }
-  tree = std::move(sorted);
-}
-
 }  // namespace
 
-MergeTree contractGreedily(const Mesh& mesh, const ModelFrame& frame, DualGraph graph, const std::vector<bool>& turned,
-                           const CostWeights& weights, const ContractionPlan& plan) {
-  const bool is_exact = graph.edges.size() <= plan.exact_edges;
-  const std::size_t region_edges = is_exact ? std::max<std::size_t>(1, graph.edges.size()) : plan.region_edges;
-  MergeTree tree;
-  {
-    Contraction contraction(mesh, frame, std::move(graph), turned, weights, region_edges);
-    contraction.run();
-    tree = contraction.takeTree();
-  }
-  if (!is_exact) sortByCost(static_cast<std::uint32_t>(mesh.triangleCount()), tree);
-  return tree;
+MergeTree contract(DualGraph graph, const MomentsOf& moments_of, const CostWeights& weights) {
+  const auto count = static_cast<std::uint32_t>(graph.first.size());
+  Contraction contraction(std::move(graph), count, moments_of, weights);
+  contraction.run();
+  return contraction.takeTree();
+}
+
+ContractedPart contractPart(DualGraph graph, std::uint32_t own, const MomentsOf& moments_of,
+                            const CostWeights& weights) {
+  Contraction contraction(std::move(graph), own, moments_of, weights);
+  contraction.run();
+  return contraction.takePart();
 }
 
 }  // namespace sheaf::grouping

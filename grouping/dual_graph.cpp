@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <span>
+#include <utility>
 
 namespace sheaf::grouping {
 namespace {
@@ -36,10 +37,12 @@ struct EdgeTable {
 EdgeTable collectEdges(const Mesh& mesh) {
   EdgeTable table;
   table.end.assign(mesh.vertexCount() + 1, 0);
+  // Saves to fetch the corners of every face twice.
+  const bool all_finite = std::ranges::all_of(mesh.positions, [](const Vec3& p) { return isFinite(p); });
   const auto for_each_edge = [&](const auto& body) {
     for (std::size_t f = 0; f < mesh.triangleCount(); ++f) {
       const Triangle& t = mesh.triangles[f];
-      if (!hasFiniteCorners(mesh, t)) continue;
+      if (!all_finite && !hasFiniteCorners(mesh, t)) continue;
       const TriangleEdges e = edgesOf(t);
       for (int i = 0; i < e.count; ++i) body(static_cast<std::uint32_t>(f), e.edges[static_cast<std::size_t>(i)]);
     }
@@ -227,6 +230,14 @@ ModelFrame modelFrameOf(const Mesh& mesh) {
   }
   if (farthest2 > 0.0) frame.scale = 0.5 / std::sqrt(farthest2);
   return frame;
+}
+
+void linkEdges(std::size_t cluster_count, DualGraph& graph) {
+  graph.first.assign(cluster_count, kNoIndex);
+  for (std::uint32_t id = 0; id < graph.edges.size(); ++id) {
+    DualEdge& e = graph.edges[id];
+    for (std::size_t side = 0; side < 2; ++side) e.next[side] = std::exchange(graph.first[e.face[side]], id);
+  }
 }
 
 DualGraph buildDualGraph(const Mesh& mesh, const ModelFrame& frame) {

@@ -61,6 +61,9 @@ struct DualGraph {
   std::vector<std::uint32_t> opposed;  ///< dual edges whose two faces run along the shared edge in the same direction
 };
 
+/// Puts the edges into the lists of clusters [0, cluster_count), the last one first. Writes first and DualEdge::next.
+void linkEdges(std::size_t cluster_count, DualGraph& graph);
+
 /// O(F) but for edges of many faces. Asserts fewer than 2^30 faces.
 DualGraph buildDualGraph(const mesh::Mesh& mesh, const ModelFrame& frame);
 

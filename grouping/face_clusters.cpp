@@ -7,22 +7,10 @@
 #include <cmath>
 #include <utility>
 
-#include "grouping/contraction.h"
-#include "grouping/dual_graph.h"
+#include "grouping/face_contraction.h"
 #include "grouping/shape_tree.h"
 
 namespace sheaf::grouping {
-namespace {
-
-MergeTree buildMergeTree(const mesh::Mesh& mesh, const CostWeights& weights) {
-  const ModelFrame frame = modelFrameOf(mesh);
-  DualGraph graph = buildDualGraph(mesh, frame);
-  const std::vector<bool> turned = findTurnedFaces(graph);
-  return contractGreedily(mesh, frame, std::move(graph), turned, weights);
-}
-
-}  // namespace
-
 FaceClusters hierarchyOf(std::uint32_t face_count, std::vector<std::array<std::uint32_t, 2>> children,
                          std::vector<float> cost) {
   FaceClusters out;
@@ -55,9 +43,16 @@ FaceClusters hierarchyOf(std::uint32_t face_count, std::vector<std::array<std::u
 }
 
 FaceClusters clusterFaces(const mesh::Mesh& mesh, const ClusterOptions& options, TaskPool& pool) {
+  const ModelFrame frame = modelFrameOf(mesh);
+  return clusterFaces(mesh, frame, buildDualGraph(mesh, frame), options, pool);
+}
+
+FaceClusters clusterFaces(const mesh::Mesh& mesh, const ModelFrame& frame, DualGraph graph,
+                          const ClusterOptions& options, TaskPool& pool) {
   assert(std::isfinite(options.weights.fit) && std::isfinite(options.weights.direction) &&
          std::isfinite(options.weights.shape));
-  MergeTree tree = buildMergeTree(mesh, options.weights);
+  const std::vector<bool> turned = findTurnedFaces(graph);
+  MergeTree tree = contractFaces(mesh, frame, std::move(graph), turned, options.weights, pool);
   FaceClusters clusters =
       hierarchyOf(static_cast<std::uint32_t>(mesh.triangleCount()), std::move(tree.children), std::move(tree.cost));
   addShapes(mesh, options.min_shape_faces, pool, clusters);

@@ -18,6 +18,7 @@
 #include "core/task_pool.h"
 #include "grouping/cluster_cost.h"
 #include "grouping/cluster_shapes.h"
+#include "grouping/dual_graph.h"
 #include "grouping/patches.h"
 #include "mesh/mesh.h"
 
@@ -77,6 +78,11 @@ void walkDown(const FaceClusters& clusters, const Visit& visit) {
 
 /// Asserts that indices are in range, weights finite and faces fewer than 2^30.
 FaceClusters clusterFaces(const mesh::Mesh& mesh, const ClusterOptions& options, TaskPool& pool);
+/// The same where these are known.
+/// frame  modelFrameOf(mesh)
+/// graph  buildDualGraph(mesh, frame)
+FaceClusters clusterFaces(const mesh::Mesh& mesh, const ModelFrame& frame, DualGraph graph,
+                          const ClusterOptions& options, TaskPool& pool);
 
 /// The tree that follows from its merges, without shapes. `children` must have passed findBrokenMerge().
 FaceClusters hierarchyOf(std::uint32_t face_count, std::vector<std::array<std::uint32_t, 2>> children,

@@ -1,6 +1,7 @@
 #include "grouping/groups_file.h"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cassert>
@@ -15,8 +16,19 @@
 namespace sheaf::grouping {
 namespace {
 
-constexpr FileKind kFileKind = {"SHEAFGRP", kGroupsFileVersion, "vertex groups"};
+constexpr FileKind kFileKind = {kGroupsFileMagic, kGroupsFileVersion, "vertex groups"};
 constexpr int kMaxParameterBits = 24;
+
+template <typename T>
+std::uint32_t addToChecksum(std::uint32_t crc, std::span<const T> values) {
+  constexpr std::size_t kAtATime = 1U << 20U;
+  for (std::size_t i = 0; i < values.size(); i += kAtATime) {
+    const std::span<const T> part = values.subspan(i, std::min(kAtATime, values.size() - i));
+    crc = static_cast<std::uint32_t>(
+        crc32(crc, reinterpret_cast<const Bytef*>(part.data()), static_cast<uInt>(part.size_bytes())));
+  }
+  return crc;
+}
 
 // The n-bit code of a parameter in [lo, hi], and back. Both ends of the range are kept exactly.
 struct Quantiser {
@@ -105,6 +117,7 @@ std::string encodeContent(const VertexGroups& groups, int bits) {
         static_cast<std::uint8_t>(groups.limit), groups.dimensions, static_cast<std::uint8_t>(groups.segment_only),
         static_cast<std::uint8_t>(groups.interrupted), static_cast<std::uint8_t>(bits)})
     out.put(field);
+  out.put(groups.mesh_checksum);
   out.put(groups.epsilon);
   out.put(groups.extent);
   putStats(out, groups.stats);
@@ -169,6 +182,7 @@ class Decoder {
     out_.segment_only = choice(2, "segment flag") != 0;
     out_.interrupted = choice(2, "interruption flag") != 0;
     bits_ = choice(kMaxParameterBits + 1, "parameter size");
+    out_.mesh_checksum = in_.get<std::uint32_t>();
     out_.epsilon = in_.get<double>();
     out_.extent = in_.get<double>();
     out_.stats = getStats(in_);
@@ -254,6 +268,11 @@ class Decoder {
 
 }  // namespace
 
+std::uint32_t meshChecksum(const mesh::Mesh& mesh) {
+  const std::uint32_t crc = addToChecksum(0, std::span<const Vec3>(mesh.positions));
+  return addToChecksum(crc, std::span<const mesh::Triangle>(mesh.triangles));
+}
+
 std::string encodeGroups(const VertexGroups& groups, const GroupsFileOptions& options) {
   assert(options.parameter_bits >= 0 && options.parameter_bits <= kMaxParameterBits);
   return sealed(kFileKind, encodeContent(groups, options.parameter_bits));
@@ -269,6 +288,17 @@ void saveGroups(const std::filesystem::path& path, const VertexGroups& groups, c
 
 VertexGroups loadGroups(const std::filesystem::path& path) {
   return decodeGroups(readFile(path, false), path.string());
+}
+
+VertexGroups loadGroups(const std::filesystem::path& path, const mesh::Mesh& mesh) {
+  VertexGroups groups = loadGroups(path);
+  const auto refuse = [&](std::string_view reason) {
+    throw Error(ErrorCode::kBadInput, fmt::format("{}: belongs to another mesh: {}", path.string(), reason));
+  };
+  if (groups.state.size() != mesh.vertexCount())
+    refuse(fmt::format("its groups are of {} vertices, the mesh has {}", groups.state.size(), mesh.vertexCount()));
+  if (groups.mesh_checksum != meshChecksum(mesh)) refuse("as many vertices, but at other places or in other faces");
+  return groups;
 }
 
 }  // namespace sheaf::grouping

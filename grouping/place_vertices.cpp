@@ -151,7 +151,7 @@ class PlaneChooser {
   std::array<std::uint32_t, 3> first_{};
 };
 
-void placeOnGroups(const VertexGroups& groups, PlacedVertices& placed) {
+void putOnGroups(const VertexGroups& groups, PlacedVertices& placed) {
   for (const VertexGroup& g : groups.groups) {
     VertexPlace place;
     if (g.kind == GroupKind::kPlane) {
@@ -234,16 +234,24 @@ void quantise(const PatchSet& set, PlacedVertices& placed) {
 PlacedVertices placeGrouped(const mesh::Mesh& mesh, const VertexGroups& groups, const PatchSet& patches,
                             ParameterForm form) {
   assert(groups.positions.size() == mesh.vertexCount());
+  if (groups.kind != GroupKind::kPlane || groups.metric != Metric::kDistance)
+    return placeOnGroups(groups, patches, form);
   PlacedVertices placed;
   placed.positions = groups.positions;
   placed.places.resize(mesh.vertexCount());
   placed.form = form;
-  if (groups.kind == GroupKind::kPlane && groups.metric == Metric::kDistance) {
-    PlaneChooser chooser(mesh, groups, placed);
-    for (const Patch& patch : patches.patches) chooser.choose(patches.verticesOf(patch));
-  } else {
-    placeOnGroups(groups, placed);
-  }
+  PlaneChooser chooser(mesh, groups, placed);
+  for (const Patch& patch : patches.patches) chooser.choose(patches.verticesOf(patch));
+  if (form == ParameterForm::k16Bit) quantise(patches, placed);
+  return placed;
+}
+
+PlacedVertices placeOnGroups(const VertexGroups& groups, const PatchSet& patches, ParameterForm form) {
+  PlacedVertices placed;
+  placed.positions = groups.positions;
+  placed.places.resize(groups.positions.size());
+  placed.form = form;
+  putOnGroups(groups, placed);
   if (form == ParameterForm::k16Bit) quantise(patches, placed);
   return placed;
 }

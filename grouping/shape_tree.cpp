@@ -215,6 +215,7 @@ void addShapes(const Mesh& mesh, std::uint32_t min_shape_faces, TaskPool& pool, 
   assert(min_shape_faces >= 2);
   Crown crown = findCrown(clusters);
   chooseShapes(crown, min_shape_faces, clusters);
+  if (clusters.shapes.empty()) return;
   buildPieces(mesh, pool, crown, clusters);
   buildCrown(crown, pool, clusters);
 }

@@ -95,6 +95,7 @@ struct VertexGroups {
   bool interrupted = false;           ///< stopped by the caller; what is here is valid, but more could be grouped
   double epsilon = 0.0;               ///< as a fraction of the extent
   double extent = 0.0;                ///< longest edge of the box of the vertices in use
+  std::uint32_t mesh_checksum = 0;    ///< meshChecksum(), set by who is going to save the groups; 0: not known
   std::vector<std::string> warnings;
   GroupingStats stats;
 

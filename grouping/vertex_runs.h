@@ -134,7 +134,11 @@ struct PlacedVertices {
 PlacedVertices placeGrouped(const mesh::Mesh& mesh, const VertexGroups& groups, const PatchSet& patches,
                             ParameterForm form);
 
-/// The same for groups of groupInPatches(), made of this mesh and these patches.
+/// The same, every vertex on the plane or line of its own group: as saved groups have it. Meshes that were grouped as
+/// one and are drawn apart then fit together.
+PlacedVertices placeOnGroups(const VertexGroups& groups, const PatchSet& patches, ParameterForm form);
+
+/// The same for groups of groupInPatches() or framedByPatch(), made of this mesh and these patches.
 PlacedVertices placeInFrames(const mesh::Mesh& mesh, const VertexGroups& groups, const PatchSet& patches,
                              ParameterForm form);
 

@@ -98,10 +98,10 @@ BaselineRow summarizeRow(const BaselineRun& run, const RowKind& kind, std::uint6
 }  // namespace
 
 BaselineBench::BaselineBench(const scenes::Scene& scene, GroupingOptions grouping, RenderSettings settings,
-                             TaskPool& pool)
+                             TaskPool& pool, const grouping::Progress& progress)
     : original_(prepareScene(scene, pool)), settings_(settings), renderer_(pool) {
   grouping.use_groups = true;
-  grouped_ = prepareScene(scene, pool, grouping);
+  grouped_ = prepareScene(scene, pool, grouping, progress);
   for (const scenes::Instance& instance : original_.instances)
     vertex_count_ += original_.meshes[instance.mesh].vertex_count;
 }

@@ -39,7 +39,9 @@ class BaselineBench {
  public:
   /// grouping  use_groups does not count
   /// settings  culling does not count
-  BaselineBench(const scenes::Scene& scene, GroupingOptions grouping, RenderSettings settings, TaskPool& pool);
+  /// progress  as for prepareScene()
+  BaselineBench(const scenes::Scene& scene, GroupingOptions grouping, RenderSettings settings, TaskPool& pool,
+                const grouping::Progress& progress = {});
 
   const PreparedScene& original() const { return original_; }
   const PreparedScene& grouped() const { return grouped_; }

@@ -20,13 +20,17 @@ struct Forms {
   PreparedScene grouped;
 };
 
-Forms prepareForms(const scenes::Scene& scene, GroupingOptions grouping, TaskPool& pool) {
+Forms prepareForms(const scenes::Scene& scene, GroupingOptions grouping, TaskPool& pool,
+                   const grouping::Progress& progress) {
+  // The groups are found twice.
+  const auto firstHalf = [&](double done) { return !progress || progress(0.5 * done); };
+  const auto secondHalf = [&](double done) { return !progress || progress(0.5 + 0.5 * done); };
   Forms forms;
   forms.original = prepareScene(scene, pool);
   grouping.use_groups = false;
-  forms.snapped = prepareScene(scene, pool, grouping);
+  forms.snapped = prepareScene(scene, pool, grouping, firstHalf);
   grouping.use_groups = true;
-  forms.grouped = prepareScene(scene, pool, grouping);
+  forms.grouped = prepareScene(scene, pool, grouping, secondHalf);
   return forms;
 }
 
@@ -107,9 +111,10 @@ bool Comparison::drawsRight() const {
 }
 
 Comparison compareGrouping(const scenes::Scene& scene, std::span<const scenes::Camera> cameras,
-                           GroupingOptions grouping, RenderSettings settings, TaskPool& pool) {
+                           GroupingOptions grouping, RenderSettings settings, TaskPool& pool,
+                           const grouping::Progress& progress) {
   assert(!cameras.empty());
-  Forms forms = prepareForms(scene, grouping, pool);
+  Forms forms = prepareForms(scene, grouping, pool, progress);
   Comparison result;
   result.grouping = grouping;
   result.geometry = geometricError(forms.grouped);

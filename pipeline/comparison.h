@@ -82,8 +82,10 @@ struct Comparison {
 /// settings  size, background, patch culling
 /// Scenes without lights are lit from each camera anew (scenes::addDefaultLights). Three prepared copies of the scene
 /// are in memory at once. Throws what Renderer::render() throws.
+/// progress  as for prepareScene()
 Comparison compareGrouping(const scenes::Scene& scene, std::span<const scenes::Camera> cameras,
-                           GroupingOptions grouping, RenderSettings settings, TaskPool& pool);
+                           GroupingOptions grouping, RenderSettings settings, TaskPool& pool,
+                           const grouping::Progress& progress = {});
 
 inline constexpr int kSideBySideGapPx = 8;
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "grouping/carried_groups.h"
 #include "grouping/cluster_patches.h"
 #include "grouping/group_quality.h"
 #include "grouping/linear_groups.h"
@@ -92,12 +93,14 @@ void gatherAttributes(const mesh::Mesh& mesh, const grouping::PatchSet& set, std
   }
 }
 
-grouping::VertexGroups findGroups(const mesh::Mesh& mesh, const GroupingOptions& options) {
+grouping::VertexGroups findGroups(const mesh::Mesh& mesh, const GroupingOptions& options,
+                                  const grouping::Progress& progress) {
   if (options.method == Grouping::kLinear) {
     grouping::LinearOptions linear;
     linear.epsilon = options.epsilon;
     linear.metric = options.metric;
     linear.limit = options.limit;
+    linear.progress = progress;
     return groupLinear(mesh, linear);
   }
   grouping::PlanarOptions planar;
@@ -136,35 +139,60 @@ grouping::VertexGroups findPatchGroups(const mesh::Mesh& mesh, const grouping::P
   return groupInPatches(mesh, set, patch_groups, pool);
 }
 
+struct Placed {
+  grouping::VertexGroups groups;  // what is measured
+  grouping::PlacedVertices vertices;
+};
+
+Placed placeFound(const GroupingOptions& options, const grouping::Progress& progress, const mesh::Mesh& mesh,
+                  const grouping::PatchSet& set, std::uint32_t min_run, TaskPool& pool) {
+  if (options.method == Grouping::kCluster) {
+    grouping::VertexGroups groups = findPatchGroups(mesh, set, options, min_run, pool);
+    grouping::PlacedVertices vertices = placeInFrames(mesh, groups, set, options.form);
+    return {std::move(groups), std::move(vertices)};
+  }
+  grouping::VertexGroups groups = findGroups(mesh, options, progress);
+  grouping::PlacedVertices vertices = placeGrouped(mesh, groups, set, options.form);
+  return {std::move(groups), std::move(vertices)};
+}
+
+Placed placeSaved(const GroupingOptions& options, const grouping::VertexGroups& groups, const mesh::Mesh& mesh,
+                  const grouping::PatchSet& set) {
+  return {groups, options.method == Grouping::kCluster
+                      ? placeInFrames(mesh, framedByPatch(groups, set), set, options.form)
+                      : placeOnGroups(groups, set, options.form)};
+}
+
 // Moves the mesh's vertices to where their groups put them and sorts the patches by group.
-void groupVertices(const GroupingOptions& options, mesh::Mesh& mesh, grouping::PatchSet& set, TaskPool& pool,
+// saved  of this mesh, or null
+void groupVertices(const GroupingOptions& options, const grouping::VertexGroups* saved,
+                   const grouping::Progress& progress, mesh::Mesh& mesh, grouping::PatchSet& set, TaskPool& pool,
                    PreparedMesh& out, std::vector<std::string>& warnings) {
-  const bool in_patches = options.method == Grouping::kCluster;
   const std::uint32_t min_run = minPlaneRun(options, set);
-  grouping::VertexGroups groups =
-      in_patches ? findPatchGroups(mesh, set, options, min_run, pool) : findGroups(mesh, options);
+  Placed placed = saved != nullptr ? placeSaved(options, *saved, mesh, set)
+                                   : placeFound(options, progress, mesh, set, min_run, pool);
+  grouping::VertexGroups& groups = placed.groups;
   warnings.insert(warnings.end(), groups.warnings.begin(), groups.warnings.end());
-  const grouping::PlacedVertices placed =
-      in_patches ? placeInFrames(mesh, groups, set, options.form) : placeGrouped(mesh, groups, set, options.form);
-  groups.positions = placed.positions;
+  groups.positions = placed.vertices.positions;
   grouping::measure(mesh.positions, mesh.triangles, groups);
   out.grouping = groups.stats;
-  mesh.positions = placed.positions;
+  mesh.positions = placed.vertices.positions;
   grouping::renewBounds(mesh, set, pool);
-  out.vertices = buildVertexRuns(placed, options.use_groups ? min_run : kNoPlaneRuns, set, pool);
+  out.vertices = buildVertexRuns(placed.vertices, options.use_groups ? min_run : kNoPlaneRuns, set, pool);
 }
 
 // positions_shaded  shading reads positions
-PreparedMesh prepareMesh(mesh::Mesh& mesh, const GroupingOptions& options, bool positions_shaded, TaskPool& pool,
+PreparedMesh prepareMesh(mesh::Mesh& mesh, const GroupingOptions& options, const grouping::VertexGroups* saved,
+                         const grouping::Progress& progress, bool positions_shaded, TaskPool& pool,
                          std::vector<std::string>& warnings) {
   PreparedMesh out;
-  out.extent = mesh::boundsOf(mesh).longestEdge();
+  out.extent = saved != nullptr ? saved->extent : mesh::boundsOf(mesh).longestEdge();
   grouping::PatchSet set = options.method == Grouping::kCluster ? grouping::clusterPatches(mesh, {}, pool)
                                                                 : grouping::splitIntoPatches(mesh, {}, pool);
   if (options.method == Grouping::kNone)
     out.vertices = ungroupedRuns(mesh, set, pool);
   else
-    groupVertices(options, mesh, set, pool, out, warnings);
+    groupVertices(options, saved, progress, mesh, set, pool, out, warnings);
 
   const std::size_t slots = set.vertex_source.size();
   if (positions_shaded && !out.vertices.isFullBySlot())
@@ -221,17 +249,28 @@ const float* PreparedMesh::shadingPosition(std::size_t axis) const {
   return vertices.isFullBySlot() ? vertices.full.data() + axis * vertices.full_stride : nullptr;
 }
 
-PreparedScene prepareScene(scenes::Scene scene, TaskPool& pool, const GroupingOptions& grouping) {
+PreparedScene prepareScene(scenes::Scene scene, TaskPool& pool, const GroupingOptions& grouping,
+                           const grouping::Progress& progress) {
   PreparedScene out;
   const std::vector<bool> positions_shaded = meshesWithShadedPositions(scene);
   out.meshes.reserve(scene.meshes.size());
+  double vertices = 0.0, vertices_before = 0.0;
+  for (const mesh::Mesh& mesh : scene.meshes) vertices += static_cast<double>(mesh.vertexCount());
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    const auto vertices_here = static_cast<double>(scene.meshes[m].vertexCount());
+    const auto showShare = [&](double done) {
+      if (progress) progress((vertices_before + done * vertices_here) / vertices);
+      return true;
+    };
     try {
-      out.meshes.push_back(prepareMesh(scene.meshes[m], grouping, positions_shaded[m], pool, out.warnings));
+      const grouping::VertexGroups* saved = grouping.saved ? &grouping.saved->at(m) : nullptr;
+      out.meshes.push_back(
+          prepareMesh(scene.meshes[m], grouping, saved, showShare, positions_shaded[m], pool, out.warnings));
     } catch (const Error& e) {  // grouping knows no names of files
       throw Error(e.code(), fmt::format("{}: {}", scene.name, e.what()));
     }
     scene.meshes[m] = {};
+    vertices_before += vertices_here;
   }
   for (std::string& warning : out.warnings) warning = fmt::format("{}: {}", scene.name, warning);
   out.textures.reserve(scene.textures.size());

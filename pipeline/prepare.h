@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,10 @@ struct GroupingOptions {
   /// Of kPlanar and kLinear only how vertices are stored. kCluster moves no vertex that is then drawn in full: there
   /// kMemory moves more of them.
   Prefer prefer = Prefer::kSpeed;
+  /// By mesh of the scene, taken in place of a search; null: searched. `method` says which kind they are: kPlanar only
+  /// on grouping::axisPlanes(), kCluster on planes across any directions; metric, limit and epsilon are theirs.
+  /// Vertices are then exactly where these groups have them, but for the form.
+  std::shared_ptr<const std::vector<grouping::VertexGroups>> saved;
   /// false: the snapped mesh drawn ungrouped: the same vertices at the same places, each stored and transformed in
   /// full. What grouped drawing is held against.
   bool use_groups = true;
@@ -72,7 +77,8 @@ struct PreparedMesh {
   std::uint64_t triangle_count = 0;
   /// What grouping did to the mesh as it is drawn; counts are 0 when it was not grouped.
   grouping::GroupingStats grouping;
-  double extent = 0.0;  ///< longest edge of the mesh's box, the unit of the figures above
+  double extent =
+      0.0;  ///< longest edge of the mesh's box, or of what was grouped as one: the unit of the figures above
 
   /// By slot; null where shading does not need it.
   const float* shadingPosition(std::size_t axis) const;
@@ -103,6 +109,9 @@ struct PreparedScene {
 
 /// Cuts, reorders and packs. The scene's meshes and texture pixels are released as they are taken over, so that mesh
 /// and prepared mesh do not stand in memory together for longer than one mesh.
-PreparedScene prepareScene(scenes::Scene scene, TaskPool& pool, const GroupingOptions& grouping = {});
+/// progress  of the search for lines, which may take long: its share over all meshes; returning false does not stop it.
+///           May be empty
+PreparedScene prepareScene(scenes::Scene scene, TaskPool& pool, const GroupingOptions& grouping = {},
+                           const grouping::Progress& progress = {});
 
 }  // namespace sheaf::pipeline

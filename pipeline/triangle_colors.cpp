@@ -3,12 +3,12 @@
 #include <array>
 #include <cassert>
 #include <map>
-#include <numeric>
 #include <tuple>
 
 #include "grouping/cluster_colors.h"
 #include "mesh/weld.h"
 #include "raster/srgb.h"
+#include "scenes/join.h"
 #include "scenes/painted_parts.h"
 
 namespace sheaf::pipeline {
@@ -30,6 +30,13 @@ Parts patchesOf(const PreparedMesh& mesh, std::size_t face_count) {
       parts.of_face[mesh.triangle_source[patch.first_triangle + t]] = p;
   }
   return parts;
+}
+
+/// What at least two of them are, else kNoIndex.
+std::uint32_t commonOf(const std::array<std::uint32_t, 3>& groups) {
+  const auto [a, b, c] = groups;
+  if (a == b || a == c) return a;
+  return b == c ? b : kNoIndex;
 }
 
 /// Planes and lines of a mesh by number, whatever patch their runs are in.
@@ -62,34 +69,30 @@ Parts groupsOf(const PreparedMesh& mesh, std::size_t face_count) {
     for (std::uint32_t slot = patch.first_triangle; slot < patch.first_triangle + patch.triangle_count; ++slot) {
       std::array<std::uint32_t, 3> group{};
       for (std::size_t k = 0; k < 3; ++k) group[k] = group_of_vertex[mesh.corners[k][slot]];
-      parts.of_face[mesh.triangle_source[slot]] = group[0] == group[1] || group[0] == group[2] ? group[0]
-                                                  : group[1] == group[2]                       ? group[1]
-                                                                                               : kNoIndex;
+      parts.of_face[mesh.triangle_source[slot]] = commonOf(group);
     }
   }
   parts.count = numbers.count();
   return parts;
 }
 
-std::vector<std::uint8_t> colorsOf(const mesh::Mesh& surface, const Parts& parts) {
+/// The parts of all instances are told apart together, since instances may touch.
+TriangleColors colorsOf(const PreparedScene& scene, const SceneSurface& surface,
+                        Parts (*parts_of)(const PreparedMesh&, std::size_t face_count)) {
+  assert(surface.face_count.size() == scene.instances.size());
+  std::vector<Parts> parts_of_mesh(scene.meshes.size());
+  Parts all;
+  all.of_face.reserve(surface.joined.triangleCount());
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const std::uint32_t mesh = scene.instances[i].mesh;
+    Parts& parts = parts_of_mesh[mesh];
+    if (parts.of_face.empty()) parts = parts_of(scene.meshes[mesh], surface.face_count[i]);
+    for (const std::uint32_t part : parts.of_face) all.of_face.push_back(part == kNoIndex ? part : all.count + part);
+    all.count += parts.count;
+  }
   const std::vector<std::uint32_t> color_of_part =
-      grouping::colorParts(surface, parts.of_face, parts.count, scenes::kPartColors);
-  std::vector<std::uint8_t> colors;
-  colors.reserve(parts.of_face.size());
-  for (const std::uint32_t part : parts.of_face)
-    colors.push_back(part == kNoIndex ? kUncolored : static_cast<std::uint8_t>(color_of_part[part]));
-  return colors;
-}
-
-/// One list per mesh.
-TriangleColors colorsByMesh(const PreparedScene& scene, std::span<const mesh::Mesh> surfaces,
-                            Parts (*parts_of)(const PreparedMesh&, std::size_t face_count)) {
-  assert(surfaces.size() == scene.meshes.size());
-  TriangleColors colors;
-  for (std::size_t m = 0; m < scene.meshes.size(); ++m)
-    colors.lists.push_back(colorsOf(surfaces[m], parts_of(scene.meshes[m], surfaces[m].triangleCount())));
-  for (const scenes::Instance& instance : scene.instances) colors.list_of_instance.push_back(instance.mesh);
-  return colors;
+      grouping::colorParts(surface.joined, all.of_face, all.count, scenes::kPartColors);
+  return colorsByPart(all.of_face, color_of_part, surface.face_count);
 }
 
 }  // namespace
@@ -108,35 +111,46 @@ void whitenSurfaces(scenes::Scene& scene) {
   }
 }
 
-std::vector<mesh::Mesh> surfacesOf(const scenes::Scene& scene) {
-  std::vector<mesh::Mesh> surfaces;
-  for (const mesh::Mesh& mesh : scene.meshes) surfaces.push_back(mesh::surfaceOf(mesh));
-  return surfaces;
+std::vector<std::size_t> faceCountsOf(const scenes::Scene& scene) {
+  std::vector<std::size_t> counts;
+  for (const scenes::Instance& instance : scene.instances)
+    counts.push_back(scene.meshes[instance.mesh].triangleCount());
+  return counts;
 }
 
-TriangleColors colorsByPart(const scenes::Scene& scene, std::span<const std::uint32_t> part_of_face,
-                            std::span<const std::uint32_t> color_of_part) {
-  assert(part_of_face.size() == scene.triangleCount());
+SceneSurface surfaceOf(const scenes::Scene& scene) {
+  return {mesh::surfaceOf(scenes::joinedMesh(scene)), faceCountsOf(scene)};
+}
+
+TriangleColors colorsByPart(std::span<const std::uint32_t> part_of_face, std::span<const std::uint32_t> color_of_part,
+                            std::span<const std::size_t> face_count) {
   TriangleColors colors;
-  for (const scenes::Instance& instance : scene.instances) {
-    const std::size_t count = scene.meshes[instance.mesh].triangleCount();
-    std::vector<std::uint8_t>& list = colors.lists.emplace_back();
+  for (const std::size_t count : face_count) {
+    std::vector<std::uint8_t>& list = colors.emplace_back();
     list.reserve(count);
     for (const std::uint32_t part : part_of_face.first(count))
-      list.push_back(static_cast<std::uint8_t>(color_of_part[part]));
+      list.push_back(part == kNoIndex ? kUncolored : static_cast<std::uint8_t>(color_of_part[part]));
     part_of_face = part_of_face.subspan(count);
   }
-  colors.list_of_instance.resize(scene.instances.size());
-  std::iota(colors.list_of_instance.begin(), colors.list_of_instance.end(), 0U);
+  assert(part_of_face.empty());
   return colors;
 }
 
-TriangleColors colorsByPatch(const PreparedScene& scene, std::span<const mesh::Mesh> surfaces) {
-  return colorsByMesh(scene, surfaces, patchesOf);
+std::vector<std::uint32_t> groupOfFace(const grouping::VertexGroups& groups,
+                                       std::span<const mesh::Triangle> triangles) {
+  std::vector<std::uint32_t> group_of_face;
+  group_of_face.reserve(triangles.size());
+  for (const mesh::Triangle& t : triangles)
+    group_of_face.push_back(commonOf({groups.owner[t[0]], groups.owner[t[1]], groups.owner[t[2]]}));
+  return group_of_face;
 }
 
-TriangleColors colorsByGroup(const PreparedScene& scene, std::span<const mesh::Mesh> surfaces) {
-  return colorsByMesh(scene, surfaces, groupsOf);
+TriangleColors colorsByPatch(const PreparedScene& scene, const SceneSurface& surface) {
+  return colorsOf(scene, surface, patchesOf);
+}
+
+TriangleColors colorsByGroup(const PreparedScene& scene, const SceneSurface& surface) {
+  return colorsOf(scene, surface, groupsOf);
 }
 
 void colorPixels(const TriangleColors& colors, Frame& frame, TaskPool& pool) {
@@ -146,8 +160,8 @@ void colorPixels(const TriangleColors& colors, Frame& frame, TaskPool& pool) {
   pool.parallelFor(frame.linear.height(), [&](int y, int) {
     for (int x = 0; x < frame.linear.width(); ++x) {
       const std::uint32_t instance = frame.instance_id.at(x, y);  // beyond all of them where nothing is
-      if (instance >= colors.list_of_instance.size()) continue;
-      const std::uint8_t color = colors.lists[colors.list_of_instance[instance]][frame.triangle_id.at(x, y)];
+      if (instance >= colors.size()) continue;
+      const std::uint8_t color = colors[instance][frame.triangle_id.at(x, y)];
       if (color == kUncolored) continue;
       Vec4& pixel = frame.linear.at(x, y);
       pixel *= palette[color];

@@ -3,9 +3,10 @@
 //   Method The scene is drawn white (whitenSurfaces), with ids. Then every pixel takes the colour of the triangle that
 //          is seen there (colorPixels). So colours end exactly where triangles do, light and shade stay, and what was
 //          drawn is what would have been drawn without them: no vertex is there twice.
-//   Keeps  neighbours in different colours, as grouping::colorParts() does
+//   Keeps  neighbours in different colours, as grouping::colorParts() does, also where one mesh ends and another begins
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -21,30 +22,41 @@ namespace sheaf::pipeline {
 /// Of a triangle that is in no part: it stays white.
 inline constexpr std::uint8_t kUncolored = 0xFF;
 
-/// For each instance one of several lists: instances of one mesh may share theirs.
-struct TriangleColors {
-  std::vector<std::vector<std::uint8_t>> lists;  ///< per triangle of a mesh a scenes::partColor(), or kUncolored
-  std::vector<std::uint32_t> list_of_instance;   ///< into lists; instances beyond the last keep their own colours
+/// By instance, then by triangle of its mesh: a scenes::partColor(), or kUncolored. Instances beyond the last keep
+/// their own colours.
+using TriangleColors = std::vector<std::vector<std::uint8_t>>;
+
+/// The surfaces of all instances as one (mesh::surfaceOf() of scenes::joinedMesh()): who is whose neighbour.
+struct SceneSurface {
+  mesh::Mesh joined;
+  std::vector<std::size_t> face_count;  ///< by instance
 };
 
 /// Takes what colours surfaces: materials become white and lit, textures and vertex colours go. Flat ones stay flat.
 void whitenSurfaces(scenes::Scene& scene);
 
-/// mesh::surfaceOf() each mesh, to be had before prepareScene() takes the meshes: who is whose neighbour.
-std::vector<mesh::Mesh> surfacesOf(const scenes::Scene& scene);
+/// By instance.
+std::vector<std::size_t> faceCountsOf(const scenes::Scene& scene);
+
+/// To be had before prepareScene() takes the meshes.
+SceneSurface surfaceOf(const scenes::Scene& scene);
 
 /// Of parts of scenes::joinedMesh(scene), such as face clusters.
-/// part_of_face   per triangle of all instances, one instance after the other
+/// part_of_face   per triangle of all instances, one instance after the other; grouping::kNoIndex: in none
 /// color_of_part  #P, below scenes::kPartColors
-TriangleColors colorsByPart(const scenes::Scene& scene, std::span<const std::uint32_t> part_of_face,
-                            std::span<const std::uint32_t> color_of_part);
+/// face_count     by instance
+TriangleColors colorsByPart(std::span<const std::uint32_t> part_of_face, std::span<const std::uint32_t> color_of_part,
+                            std::span<const std::size_t> face_count);
 
-/// surfaces  of the scene that `scene` was prepared from
-TriangleColors colorsByPatch(const PreparedScene& scene, std::span<const mesh::Mesh> surfaces);
+/// #F, the group that at least two corners of a triangle are in, kNoIndex if there is none.
+std::vector<std::uint32_t> groupOfFace(const grouping::VertexGroups& groups, std::span<const mesh::Triangle> triangles);
+
+/// Each instance has patches of its own. surface  of the scene that `scene` was prepared from
+TriangleColors colorsByPatch(const PreparedScene& scene, const SceneSurface& surface);
 
 /// A triangle belongs to the plane or line that at least two of its corners are drawn by. Others, and all of a scene
-/// that was prepared without groups, are in none.
-TriangleColors colorsByGroup(const PreparedScene& scene, std::span<const mesh::Mesh> surfaces);
+/// that was prepared without groups, are in none. Each instance has groups of its own.
+TriangleColors colorsByGroup(const PreparedScene& scene, const SceneSurface& surface);
 
 /// frame  drawn with want_linear and want_ids; color is brought up to date if it is there
 void colorPixels(const TriangleColors& colors, Frame& frame, TaskPool& pool);

@@ -67,4 +67,19 @@ mesh::Mesh joinedMesh(const Scene& scene) {
   return joined;
 }
 
+Scene withMeshPerInstance(Scene scene, const DMat4& world_from_mesh) {
+  const DMat4 mesh_from_world = glm::transpose(world_from_mesh);
+  std::vector<mesh::Mesh> meshes(scene.instances.size());
+  for (std::uint32_t i = 0; i < meshes.size(); ++i) {
+    Instance& instance = scene.instances[i];
+    const mesh::Mesh& mesh = scene.meshes[instance.mesh];
+    append(mesh, mesh_from_world * instance.world_from_object,
+           {!mesh.normals.empty(), !mesh.texcoords.empty(), !mesh.colors.empty()}, meshes[i]);
+    instance.mesh = i;
+    instance.world_from_object = world_from_mesh;
+  }
+  scene.meshes = std::move(meshes);
+  return scene;
+}
+
 }  // namespace sheaf::scenes

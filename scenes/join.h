@@ -12,4 +12,10 @@ namespace sheaf::scenes {
 /// not. Throws Error(kUnsupported) for more than 2^32 - 2 vertices.
 mesh::Mesh joinedMesh(const Scene& scene);
 
+/// The same surfaces with a mesh for each instance, whose vertices have the places that they have in joinedMesh(),
+/// turned into another space: mesh i is instance i, and instances differ from each other only by mesh and material.
+/// Triangles are as many and in the same order as in joinedMesh(). Solid textures are then laid out in that space, too.
+/// world_from_mesh  a turn of axes
+Scene withMeshPerInstance(Scene scene, const DMat4& world_from_mesh);
+
 }  // namespace sheaf::scenes

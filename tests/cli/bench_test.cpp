@@ -53,7 +53,7 @@ TEST_CASE("cli/bench: the table has every stage for the three baselines, aligned
                            "revision",
                            "orbit: 3 frames from 3 views",
                            "eliminated",
-                           "bytes per vertex"})
+                           "bytes per patch vertex"})
     CHECK_MESSAGE(result.out.find(word) != std::string::npos, word);
   std::istringstream lines(result.out);
   std::set<std::size_t> widths;
@@ -96,7 +96,7 @@ TEST_CASE("cli/bench: the JSON has quartiles, items, ratios, counters and the ti
   }
   CHECK(names == std::vector<std::string>{"cull", "transform", "clip", "setup+bin", "raster", "shade", "other", "frame",
                                           "geometry", "transform+clip"});
-  CHECK(section["counters"]["classic"]["vertices_full"] == json["vertices"]);
+  CHECK(section["counters"]["classic"]["vertices_full"] == json["patch_vertices"]);
   CHECK(section["counters"]["grouped"]["vertices_grouped"].get<int>() > 0);
 }
 

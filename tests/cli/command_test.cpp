@@ -1,6 +1,8 @@
 // The command as a whole: help, version, scenes, info, exit codes, and what goes to which stream.
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/run.h"
@@ -294,7 +296,7 @@ TEST_CASE("cli/command: info says what is in a file, as text and as JSON, with w
   CHECK(text.out.find("1 triangles") != std::string::npos);
   const auto json = nlohmann::json::parse(runSheaf(folder, {"info", "t.stl", "--json"}).out);
   CHECK(json["triangles"] == 1);
-  CHECK(json["vertices"] == 3);
+  CHECK(json["file_vertices"] == 3);
   CHECK(json["bounds"]["max"] == nlohmann::json::array({1.0, 1.0, 0.0}));
   CHECK(json["warnings"].empty());
 
@@ -305,6 +307,49 @@ TEST_CASE("cli/command: info says what is in a file, as text and as JSON, with w
   CHECK(runSheaf(folder, {"info", "w.obj", "-q"}).err.empty());
   const RunResult warned_json = runSheaf(folder, {"info", "w.obj", "--json"});
   CHECK(nlohmann::json::parse(warned_json.out)["warnings"].size() == 1);
+}
+
+TEST_CASE("cli/command: each count of vertices has its name, the same in every command") {
+  const TempFolder folder;
+  // A sheet with a fold along its middle: made normals split its 31 vertices. One place is there twice.
+  std::string obj;
+  for (int y = 0; y <= 30; ++y)
+    for (int x = -15; x <= 15; ++x) obj += fmt::format("v {} {} {}\n", x, y, 2 * std::abs(x));
+  obj += "v 0 0 0\n";
+  for (int y = 0; y < 30; ++y)
+    for (int x = 1; x <= 30; ++x) {
+      const int a = 31 * y + x;
+      obj += fmt::format("f {} {} {} {}\n", a == 16 ? 962 : a, a + 1, a + 32, a + 31);
+    }
+  folder.write("sheet.obj", obj);
+  const auto said = [&](std::vector<std::string> words) {
+    words.insert(words.begin() + 1, "sheet.obj");
+    const RunResult text = runSheaf(folder, words);
+    words.emplace_back("--json");
+    const RunResult json = runSheaf(folder, words);
+    CAPTURE(json.err);
+    REQUIRE(text.code == 0);
+    return std::pair(text.out, nlohmann::json::parse(json.out));
+  };
+  const auto [info, info_json] = said({"info"});
+  CHECK(info.find("(962 file vertices, 1800 triangles") != std::string::npos);
+  CHECK(info_json["file_vertices"] == 962);
+  const auto [group, group_json] = said({"group"});
+  CHECK(group.find("962 joined vertices, 1800") != std::string::npos);
+  CHECK(group.find("of 962 joined vertices in use)") != std::string::npos);
+  CHECK(group_json["joined_vertices"] == 962);
+  const auto [cluster, cluster_json] = said({"cluster"});
+  CHECK(cluster.find("961 surface vertices") != std::string::npos);
+  CHECK(cluster_json["surface_vertices"] == 961);
+  const auto [simplify, simplify_json] = said({"simplify", "--faces", "100", "-o", "x.ply"});
+  CHECK(simplify.find("962 joined vertices in use to ") != std::string::npos);
+  const auto [compare, compare_json] = said({"compare", "--size", "64x48"});
+  CHECK(compare.find("of 992 drawn vertices in use)") != std::string::npos);
+  CHECK(compare_json["drawn_vertices"] == 992);
+  const auto [bench, bench_json] = said({"bench", "--size", "64x48", "--frames", "1"});
+  CHECK(bench.find(" patch vertices\n") != std::string::npos);
+  CHECK(bench.find("drawn vertices eliminated") != std::string::npos);
+  CHECK(bench_json["patch_vertices"] > 992);
 }
 
 }  // namespace sheaf::cli

@@ -48,7 +48,7 @@ TEST_CASE("cli/group: the JSON's counts add up and its displacements keep to eps
   const json j = grouped(folder, {});
   const auto count = [&](const char* name) { return j[name].get<int>(); };
   CHECK(count("grouped_vertices") + count("defining_vertices") + count("free_vertices") == count("used_vertices"));
-  CHECK(count("used_vertices") <= count("vertices"));
+  CHECK(count("used_vertices") <= count("joined_vertices"));
   CHECK(j["eliminated_fraction"].get<double>() ==
         doctest::Approx(double(count("grouped_vertices")) / count("used_vertices")));
   CHECK(j["displacement_fraction"]["max"].get<double>() <= 0.005001);
@@ -131,11 +131,11 @@ TEST_CASE("cli/group: -o saves groups that load again, --snapped the mesh with i
 TEST_CASE("cli/group: a file's own vertices are grouped, not those that drawing splits at creases") {
   const TempFolder folder;
   folder.write("pyramid.obj", pyramidObj());
-  CHECK(grouped(folder, {}, "pyramid.obj")["vertices"] == 5);
+  CHECK(grouped(folder, {}, "pyramid.obj")["joined_vertices"] == 5);
   // Two materials cut the surface up; it is grouped whole.
   folder.write("two.obj", pyramidObj() + "usemtl other\nf 1 3 2\nf 1 4 3\n");
   const json two = grouped(folder, {"-q"}, "two.obj");
-  CHECK(two["vertices"] == 5);
+  CHECK(two["joined_vertices"] == 5);
   CHECK(two["triangles"] == 6);
 }
 

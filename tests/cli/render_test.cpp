@@ -274,7 +274,6 @@ TEST_CASE("cli/render: colours that cannot be shown are refused: one line, exit 
       {{"--overlay", "boxes"}, "--overlay is drawn over parts of a surface: say with --color-by which"},
       {{"--clusters", "9"}, "--clusters is about face clusters: add --color-by cluster"},
       {{"--color-by", "patch", "--tolerance", "1%"}, "--tolerance is about face clusters"},
-      {{"--color-by", "patch", "--from", "a.sheaf"}, "--from is about face clusters"},
       {{"--color-by", "cluster", "--clusters", "9", "--max-faces", "9"}, "each choose a cut"},
   };
   for (const auto& [options, reason] : wrong) {
@@ -303,6 +302,24 @@ TEST_CASE("cli/render: a coloured EXR shows what the PNG shows") {
       runSheaf(folder, {"render", "builtin:sphere?n=8", "--size", "64x48", "--color-by", "patch", "-o", "a.png"});
   REQUIRE(png.code == 0);
   CHECK(raster::compareImages(read, raster::readImage(folder.file("a.png"))).max_error <= 2);
+}
+
+TEST_CASE("cli/render: linear grouping shows how far it is, on a terminal only, as compare and bench do") {
+  const TempFolder folder;
+  for (Words arguments : {Words{"render", "builtin:terrain?n=90", "--size", "64x64", "-o", "x.png"},
+                          Words{"compare", "builtin:sphere?n=20", "--size", "64x64"},
+                          Words{"bench", "builtin:sphere?n=20", "--size", "64x64", "--frames", "1"}}) {
+    CAPTURE(arguments.front());
+    arguments.insert(arguments.end(), {"--grouping", "linear"});
+    CHECK(runSheaf(folder, arguments).err.find("grouping ") == std::string::npos);
+    RunSettings settings;
+    settings.err_is_terminal = true;
+    const std::string shown = runSheaf(folder, arguments, settings).err;
+    CHECK(shown.starts_with("\rgrouping "));
+    CHECK(shown.find(" %") != std::string::npos);
+    arguments.emplace_back("-q");
+    CHECK(runSheaf(folder, arguments, settings).err.empty());
+  }
 }
 
 }  // namespace sheaf::cli

@@ -87,6 +87,25 @@ inline PlainFigures plainFigures(const mesh::Mesh& mesh, const Faces& faces, con
   return figures;
 }
 
+// What joining two clusters costs.
+// around  facesOfEdges(mesh)
+inline double plainCost(const mesh::Mesh& mesh, const std::map<Edge, Faces>& around, const Faces& a, const Faces& b,
+                        const ModelFrame& frame, const CostWeights& weights) {
+  const auto gamma_of = [&](const Faces& faces) {
+    const double rho = plainPerimeter(mesh, around, faces, frame);
+    return rho * rho / (4.0 * kPi * plainFigures(mesh, faces, frame).area);
+  };
+  Faces both = a;
+  both.insert(both.end(), b.begin(), b.end());
+  const PlainFigures figures = plainFigures(mesh, both, frame);
+  const double gamma = gamma_of(both), before = std::max(gamma_of(a), gamma_of(b));
+  const double shape = 4.0 * kPi * gamma < 1e-12 ? 0.0 : std::clamp((gamma - before) / gamma, -1.0, 1.0);
+  int exponent = 0;
+  const double mantissa = 2.0 * std::frexp(figures.corners, &exponent);  // in [1, 2)
+  return weights.fit * figures.fit + weights.direction * figures.direction + weights.shape * shape +
+         weights.balance * (exponent - 1 + mantissa - 1.0);
+}
+
 inline Faces listOf(std::span<const std::uint32_t> faces) {
   Faces sorted(faces.begin(), faces.end());
   std::ranges::sort(sorted);

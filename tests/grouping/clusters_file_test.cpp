@@ -58,6 +58,12 @@ void checkRefusedOrSound(const std::string& bytes, const mesh::Mesh& mesh) {
   } catch (const Error& e) {
     CHECK(e.code() == ErrorCode::kBadInput);
   }
+  try {
+    const FaceClusters alone = decodeClusters(bytes, "x");
+    CHECK(findInconsistency(alone) == "");
+  } catch (const Error& e) {
+    CHECK(e.code() == ErrorCode::kBadInput);
+  }
 }
 
 }  // namespace
@@ -74,6 +80,7 @@ TEST_CASE("grouping/clusters_file: what is loaded equals what was saved") {
   }
   const TempFolder folder;
   const mesh::Mesh small = smallMesh();
+  CHECK(decodeClusters(smallFile(), "x") == clustersOf(small));
   saveClusters(folder.file("a.sheaf"), clustersOf(small), small);
   CHECK(loadClusters(folder.file("a.sheaf"), small) == clustersOf(small));
 }

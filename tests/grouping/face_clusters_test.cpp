@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "grouping/contraction.h"
+#include "tests/grouping/assorted_meshes.h"
 #include "tests/grouping/cluster_checks.h"
 #include "tests/grouping/shapes.h"
 #include "tests/mesh/meshes.h"
@@ -20,69 +20,6 @@ constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 FaceClusters clustersOf(const mesh::Mesh& mesh, const CostWeights& weights = {}, std::uint32_t min_shape_faces = 8) {
   TaskPool pool(1);
   return clusterFaces(mesh, {weights, min_shape_faces}, pool);
-}
-
-void append(mesh::Mesh& mesh, const mesh::Mesh& other, const Vec3& offset) {
-  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-  for (const Vec3& p : other.positions) mesh.positions.push_back(p + offset);
-  for (const mesh::Triangle& t : other.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-}
-
-mesh::Mesh needles(std::mt19937& rng) {
-  mesh::Mesh mesh = hills(rng, 12, 0.1F);
-  for (Vec3& p : mesh.positions) p.x *= 1e-4F;
-  return mesh;
-}
-
-mesh::Mesh severalPieces(std::mt19937& rng) {
-  mesh::Mesh mesh = lumpyBall(rng, 8, 10, 0.03F);
-  append(mesh, hills(rng, 6), Vec3(3.0F, 0.0F, 0.0F));
-  append(mesh, mesh::makeCube(), Vec3(-3.0F, 0.0F, 0.0F));
-  mesh.positions.push_back(Vec3(9.0F));  // unused
-  return mesh;
-}
-
-mesh::Mesh badFaces(std::mt19937& rng) {
-  mesh::Mesh mesh = hills(rng, 6);
-  mesh.positions.push_back(Vec3(kNaN));
-  mesh.positions.push_back(Vec3(std::numeric_limits<float>::infinity()));
-  const auto nan = static_cast<std::uint32_t>(mesh.positions.size() - 2);
-  mesh.triangles.push_back({0, 1, nan});
-  mesh.triangles.push_back({0, 1, nan + 1});
-  mesh.triangles.push_back({nan, nan, nan});
-  mesh.triangles.push_back({0, 0, 1});
-  mesh.triangles.push_back({3, 3, 3});
-  mesh.triangles.push_back(mesh.triangles[7]);
-  return mesh;
-}
-
-struct Named {
-  const char* name;
-  mesh::Mesh mesh;
-};
-
-std::vector<Named> assortedMeshes() {
-  std::mt19937 rng(0xfaceU);
-  std::vector<Named> meshes;
-  meshes.push_back({"closed ball", lumpyBall(rng, 16, 20, 0.02F)});
-  meshes.push_back({"hills", hills(rng, 14)});
-  meshes.push_back({"planar grid", mesh::makeGrid(8)});
-  meshes.push_back({"cube", mesh::makeCube()});
-  meshes.push_back({"sphere", mesh::makeSphere(10, 12)});
-  meshes.push_back({"soup", triangleSoup(rng, 40, 120)});
-  meshes.push_back({"dense soup", triangleSoup(rng, 10, 150)});
-  meshes.push_back({"needles", needles(rng)});
-  meshes.push_back({"several pieces", severalPieces(rng)});
-  meshes.push_back({"bad faces", badFaces(rng)});
-  mesh::Mesh far = lumpyBall(rng, 10, 12);
-  for (Vec3& p : far.positions) p = 40.0F * p + Vec3(1e6F, -1e6F, 1e6F);
-  meshes.push_back({"far from the origin", std::move(far)});
-  mesh::Mesh wound = lumpyBall(rng, 10, 12, 0.02F);
-  for (mesh::Triangle& t : wound.triangles)
-    if (rng() % 3 == 0) std::swap(t[0], t[1]);
-  meshes.push_back({"inconsistent winding", std::move(wound)});
-  meshes.push_back({"fan", mesh::makeFan(300)});
-  return meshes;
 }
 
 // Greedy merging as [HFC] describes it, every cost taken from the faces themselves.
@@ -124,24 +61,8 @@ class NaiveClustering {
   }
 
  private:
-  double gammaOf(const Faces& faces, const PlainFigures& figures) const {
-    const double rho = plainPerimeter(mesh_, around_, faces, frame_);
-    return rho * rho / (4.0 * kPi * figures.area);
-  }
-
   double costOf(const Edge& pair) const {
-    const Faces &a = clusters_[pair.first], &b = clusters_[pair.second];
-    Faces both = a;
-    both.insert(both.end(), b.begin(), b.end());
-    const PlainFigures figures = plainFigures(mesh_, both, frame_);
-    const double gamma = gammaOf(both, figures);
-    const double before =
-        std::max(gammaOf(a, plainFigures(mesh_, a, frame_)), gammaOf(b, plainFigures(mesh_, b, frame_)));
-    const double shape = 4.0 * kPi * gamma < 1e-12 ? 0.0 : std::clamp((gamma - before) / gamma, -1.0, 1.0);
-    int exponent = 0;
-    const double mantissa = 2.0 * std::frexp(figures.corners, &exponent);  // in [1, 2)
-    return weights_.fit * figures.fit + weights_.direction * figures.direction + weights_.shape * shape +
-           weights_.balance * (exponent - 1 + mantissa - 1.0);
+    return plainCost(mesh_, around_, clusters_[pair.first], clusters_[pair.second], frame_, weights_);
   }
 
   mesh::Mesh mesh_;
@@ -517,35 +438,6 @@ TEST_CASE("grouping/face_clusters: hubs with thousands of neighbours") {
     Faces faces;
     for (std::uint32_t i = 0; i < kSteps; ++i) faces.push_back(4 * i + side);
     CHECK(all.contains(faces));
-  }
-}
-
-TEST_CASE(
-    "grouping/face_clusters: contracted region by region, a mesh has a hierarchy as good and in the order of costs") {
-  std::mt19937 rng(0x4e61);
-  const mesh::Mesh mesh = lumpyBall(rng, 60, 80, 0.003F);
-  const ModelFrame frame = modelFrameOf(mesh);
-  const auto contract = [&](const ContractionPlan& plan) {
-    MergeTree tree = contractGreedily(mesh, frame, buildDualGraph(mesh, frame), {}, {}, plan);
-    return hierarchyOf(static_cast<std::uint32_t>(mesh.triangleCount()), std::move(tree.children),
-                       std::move(tree.cost));
-  };
-  const auto sum = [](const FaceClusters& c) { return std::accumulate(c.cost.begin(), c.cost.end(), 0.0); };
-  const FaceClusters exact = contract({});
-  for (const std::size_t region_edges : {std::size_t{1000}, std::size_t{3000}}) {
-    const FaceClusters clusters = contract({0, region_edges});
-    CHECK(findBrokenMerge(clusters.faceCount(), clusters.children) == "");
-    CHECK(clusters.roots == exact.roots);
-    CHECK(clusters != exact);
-    CHECK(std::abs(sum(clusters) - sum(exact)) < 0.001 * double(exact.cost.size()));  // costs reach from -1 to 3
-    // A merge that costs less than the one before it is one that the latter has made possible, or one of its parts has.
-    std::size_t out_of_order = 0;
-    for (std::uint32_t i = 1; i < clusters.cost.size(); ++i) {
-      const auto& made_of = clusters.children[i];
-      if (clusters.cost[i] < clusters.cost[i - 1] && std::max(made_of[0], made_of[1]) + 1 < clusters.faceCount())
-        ++out_of_order;
-    }
-    CHECK(out_of_order == 0);
   }
 }
 

@@ -11,6 +11,7 @@
 #include "grouping/planar_groups.h"
 #include "tests/grouping/reseal.h"
 #include "tests/grouping/shapes.h"
+#include "tests/temp_folder.h"
 
 namespace sheaf::grouping {
 namespace {
@@ -47,7 +48,8 @@ TEST_CASE("grouping/groups_file: what is loaded equals what was saved") {
   }
   const auto path =
       std::filesystem::temp_directory_path() / ("groups_file_test." + std::to_string(getpid()) + ".sheaf");
-  const VertexGroups groups = assortedGroups()[0];
+  VertexGroups groups = assortedGroups()[0];
+  groups.mesh_checksum = 0x12345678;
   saveGroups(path, groups);
   CHECK(loadGroups(path) == groups);
   std::filesystem::remove(path);
@@ -133,14 +135,41 @@ TEST_CASE("grouping/groups_file: a truncated or extended file is refused") {
 TEST_CASE("grouping/groups_file: refusals name the file and the reason") {
   CHECK_THROWS_WITH_AS(decodeGroups("solid cube", "cube.stl"), "cube.stl: is not a file of vertex groups", Error);
   std::string newer = encodeGroups(smallGroups(GroupKind::kPlane));
-  newer[8] = 2;
+  newer[8] = 9;
   try {
     decodeGroups(newer, "a.sheaf");
     FAIL("accepted");
   } catch (const Error& error) {
     CHECK(error.code() == ErrorCode::kUnsupported);
-    CHECK(std::string(error.what()) == "a.sheaf: has version 2 of vertex groups, this reads version 1");
+    CHECK(std::string(error.what()) == "a.sheaf: has version 9 of vertex groups, this reads version 2");
   }
+}
+
+TEST_CASE("grouping/groups_file: saved groups are taken only for their own mesh, as it is numbered") {
+  std::mt19937 rng(0xf121);
+  const mesh::Mesh mesh = lumpyBall(rng, 6, 8);
+  const TempFolder folder;
+  VertexGroups groups = groupPlanar(mesh, {});
+  groups.mesh_checksum = meshChecksum(mesh);
+  saveGroups(folder.file("a.sheaf"), groups);
+  CHECK(loadGroups(folder.file("a.sheaf"), mesh) == groups);
+  const auto refusal = [&](const mesh::Mesh& other) {
+    try {
+      loadGroups(folder.file("a.sheaf"), other);
+    } catch (const Error& error) {
+      CHECK(error.code() == ErrorCode::kBadInput);
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  mesh::Mesh moved = mesh, turned = mesh, renumbered = mesh, larger = mesh;
+  moved.positions[7].x += 1e-3F;
+  std::swap(turned.triangles[3][0], turned.triangles[3][1]);
+  std::swap(renumbered.positions[2], renumbered.positions[3]);
+  larger.positions.push_back(Vec3(0.0F));
+  for (const mesh::Mesh& other : {moved, turned, renumbered})
+    CHECK(refusal(other).find("a.sheaf: belongs to another mesh: as many vertices") != std::string::npos);
+  CHECK(refusal(larger).find("its groups are of") != std::string::npos);
 }
 
 TEST_CASE("grouping/groups_file: unused vertices keep their bits, also those of no number") {

@@ -12,7 +12,24 @@
 namespace sheaf::pipeline {
 namespace {
 
-constexpr double kWidestBar = 0.004;  // of the extent
+constexpr double kWidestBarPx = 1.7;
+constexpr int kHeightPx = 400;
+
+// All of it in view.
+OverlayView viewOf(const mesh::Mesh& mesh) {
+  scenes::Scene scene;
+  scene.meshes.push_back(mesh);
+  scene.materials.emplace_back();
+  scene.instances.emplace_back();
+  return {usualCamera(scene, 1.0), kHeightPx};
+}
+
+// Of a bar in the world, at most.
+double widestBar(const OverlayView& view, const mesh::Mesh& mesh) {
+  const double farthest =
+      glm::distance(view.camera.eye, DVec3(mesh::boundsOf(mesh).center())) + double{mesh::boundsOf(mesh).longestEdge()};
+  return kWidestBarPx * farthest * 2.0 * std::tan(0.5 * view.camera.vertical_fov_rad) / view.height_px;
+}
 
 struct Clustered {
   mesh::Mesh mesh;
@@ -41,8 +58,9 @@ Clustered ball(std::uint32_t count) {
 
 TEST_CASE("pipeline/overlays: the bars of a box run from corner to corner, and nowhere else") {
   const Clustered c = ball(9);
-  const double width = kWidestBar * double{mesh::boundsOf(c.mesh).longestEdge()};
-  const scenes::Scene overlay = clusterOverlay(c.mesh, c.clusters, c.cut, {.boxes = true});
+  const OverlayView view = viewOf(c.mesh);
+  const double width = widestBar(view, c.mesh);
+  const scenes::Scene overlay = clusterOverlay(c.mesh, c.clusters, c.cut, {.boxes = true}, view);
   REQUIRE(overlay.meshes.size() == 1);
   const mesh::Mesh& bars = overlay.meshes[0];
   CHECK(bars.triangleCount() == 9 * 12 * 12);
@@ -69,14 +87,15 @@ TEST_CASE("pipeline/overlays: the bars of a box run from corner to corner, and n
 
 TEST_CASE("pipeline/overlays: a plane is a lattice of bars in it, as large as the box") {
   const Clustered c = ball(5);
-  const double width = kWidestBar * double{mesh::boundsOf(c.mesh).longestEdge()};
-  const mesh::Mesh bars = clusterOverlay(c.mesh, c.clusters, c.cut, {.planes = true}).meshes[0];
+  const OverlayView view = viewOf(c.mesh);
+  const double width = widestBar(view, c.mesh);
+  const mesh::Mesh bars = clusterOverlay(c.mesh, c.clusters, c.cut, {.planes = true}, view).meshes[0];
   CHECK(bars.triangleCount() == 5 * 10 * 12);
   for (std::size_t v = 0; v < bars.vertexCount(); ++v) {
     const grouping::ClusterShape s = grouping::shapeOf(c.mesh, c.clusters, c.cut[v / 80]);
     CHECK(std::abs(glm::dot(DVec3(bars.positions[v]) - DVec3(s.center), DVec3(s.frame.normal))) < width);
   }
-  const scenes::Scene both = clusterOverlay(c.mesh, c.clusters, c.cut, {.boxes = true, .planes = true});
+  const scenes::Scene both = clusterOverlay(c.mesh, c.clusters, c.cut, {.boxes = true, .planes = true}, view);
   CHECK(both.triangleCount() == 5 * 22 * 12);
 }
 
@@ -94,7 +113,7 @@ TEST_CASE("pipeline/overlays: bars are seen where nothing is before them, and wh
   Renderer(pool).render(prepared, camera, settings, plain);
   const auto draw = [&](const Overlay& what, Frame& frame) {
     PreparedScene covered = prepareScene(scene, pool);
-    addOverlay(clusterOverlay(c.mesh, c.clusters, c.cut, what), covered, pool);
+    addOverlay(clusterOverlay(c.mesh, c.clusters, c.cut, what, {camera, 150}), covered, pool);
     CHECK(covered.instances.size() == 2);
     CHECK(covered.meshes.size() == 2);
     Renderer(pool).render(covered, camera, settings, frame);
@@ -119,6 +138,59 @@ TEST_CASE("pipeline/overlays: bars are seen where nothing is before them, and wh
   CHECK(plane_pixels > 100);
 }
 
+TEST_CASE("pipeline/overlays: a bar is as wide in the picture near and far, seen in perspective and parallel") {
+  TaskPool pool(1);
+  // A floor that runs from just before the eye far into the distance, in one patch, seen from above its middle.
+  scenes::Scene scene;
+  mesh::Mesh floor;
+  floor.positions = {{-1.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}, {1.0F, 0.0F, -60.0F}, {-1.0F, 0.0F, -60.0F}};
+  floor.triangles = {{0, 1, 2}, {0, 2, 3}};
+  scene.meshes.push_back(floor);
+  scene.materials.emplace_back();
+  scene.instances.emplace_back();
+  scenes::Camera camera;
+  camera.eye = DVec3(0.0, 1.0, 1.0);
+  camera.target = DVec3(0.0, 0.0, -4.0);
+  for (const double parallel_height : {0.0, 6.0})
+    for (const int height : {150, 600}) {
+      CAPTURE(parallel_height);
+      CAPTURE(height);
+      camera.orthographic_height = parallel_height;
+      const scenes::Camera fitted = scenes::fitClipPlanes(camera, boundsOf(scene));
+      PreparedScene prepared = prepareScene(scene, pool);
+      addOverlay(patchBoxes(prepared, {fitted, height}), prepared, pool);
+      Frame frame;
+      Renderer(pool).render(prepared, fitted, allChannels(height, height), frame);
+      // Rows cross the two long edges, one left and one right of the middle.
+      int rows = 0;
+      for (int y = 0; y < height; ++y) {
+        int left = 0;
+        for (int x = 0; x < height / 2 - 4; ++x) left += frame.instance_id.at(x, y) == 1;
+        if (left == 0 || left > 8) continue;  // beyond the ends, or along one
+        ++rows;
+        CHECK(left <= 4);  // 1.6 pixels, at a slant
+      }
+      CHECK(rows > height / 8);
+    }
+}
+
+TEST_CASE("pipeline/overlays: bars on what is small in the picture are narrower, and none begins behind the eye") {
+  const Clustered c = ball(1);
+  const grouping::ClusterShape s = grouping::shapeOf(c.mesh, c.clusters, c.cut[0]);
+  OverlayView view = viewOf(c.mesh);
+  const double diagonal = glm::distance(DVec3(s.lo), DVec3(s.hi));
+  view.camera.eye = view.camera.target + 1000.0 * (view.camera.eye - view.camera.target);  // less than a pixel
+  const Box3 around = boundsOf(clusterOverlay(c.mesh, c.clusters, c.cut, {.boxes = true}, view));
+  CHECK(double{around.longestEdge()} < 1.2 * diagonal);
+  view.camera.eye = DVec3(s.center);
+  view.camera.target = DVec3(s.center) + DVec3(0.0, 0.0, -1.0);
+  view.camera.near = 0.01 * diagonal;
+  const scenes::Scene inside = clusterOverlay(c.mesh, c.clusters, c.cut, {.boxes = true}, view);
+  CHECK(inside.triangleCount() > 0);
+  CHECK(inside.triangleCount() < 12 * 12);
+  CHECK(double{boundsOf(inside).hi.z} < double{s.center.z});
+}
+
 TEST_CASE("pipeline/overlays: boxes of patches and planes of groups stand where the instances stand") {
   TaskPool pool(1);
   scenes::Scene scene;
@@ -130,30 +202,30 @@ TEST_CASE("pipeline/overlays: boxes of patches and planes of groups stand where 
   planar.method = Grouping::kPlanar;
   planar.prefer = Prefer::kMemory;
   const Box3 bounds = boundsOf(scene);
+  const OverlayView view{usualCamera(scene, 1.0), kHeightPx};
   const PreparedScene prepared = prepareScene(std::move(scene), pool, planar);
   for (const bool of_groups : {false, true}) {
-    const scenes::Scene overlay = of_groups ? groupPlanes(prepared) : patchBoxes(prepared);
-    REQUIRE(overlay.instances.size() == 2);
-    CHECK(overlay.instances[1].world_from_object == moved);
-    CHECK(overlay.meshes[0].triangleCount() == prepared.meshes[0].patches.size() * (of_groups ? 10 : 12) * 12);
+    const scenes::Scene overlay = of_groups ? groupPlanes(prepared, view) : patchBoxes(prepared, view);
+    CHECK(overlay.triangleCount() == 2 * prepared.meshes[0].patches.size() * (of_groups ? 10 : 12) * 12);
     const Box3 around = boundsOf(overlay);
-    CHECK(glm::distance(around.lo, bounds.lo) < 1.0F);  // 0.4 % of 60
+    CHECK(glm::distance(around.lo, bounds.lo) < 1.0F);  // 400 pixels show some 60
     CHECK(glm::distance(around.hi, bounds.hi) < 1.0F);
   }
 }
 
 TEST_CASE("pipeline/overlays: clusters of one face, of no size, and none") {
   const Clustered each(mesh::makeCube(), 12);
-  CHECK(clusterOverlay(each.mesh, each.clusters, each.cut, {true, true}).triangleCount() == 12 * 22 * 12);
+  CHECK(clusterOverlay(each.mesh, each.clusters, each.cut, {true, true}, viewOf(each.mesh)).triangleCount() ==
+        12 * 22 * 12);
   mesh::Mesh point;
   point.positions.assign(3, Vec3(2.0F));
   point.triangles = {{0, 1, 2}};
   const Clustered single(point, 1);
   TaskPool pool(1);
   PreparedScene prepared;
-  addOverlay(clusterOverlay(single.mesh, single.clusters, single.cut, {true, true}), prepared, pool);
+  addOverlay(clusterOverlay(single.mesh, single.clusters, single.cut, {true, true}, viewOf(each.mesh)), prepared, pool);
   CHECK(prepared.instances.size() == 1);
-  addOverlay(clusterOverlay({}, {}, {}, {true, true}), prepared, pool);
+  addOverlay(clusterOverlay({}, {}, {}, {true, true}, viewOf(each.mesh)), prepared, pool);
   CHECK(prepared.instances.size() == 2);
 }
 

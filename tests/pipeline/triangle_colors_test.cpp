@@ -60,10 +60,10 @@ TEST_CASE("pipeline/triangle_colors: each pixel is what it is in white, in the c
     scenes::Scene scene = scenes::buildBuiltin(spec);
     const scenes::Camera camera = usualCamera(scene, double(kWidth) / kHeight);
     if (scene.lights.empty()) scenes::addDefaultLights(scene, camera);
-    const std::vector<mesh::Mesh> surfaces = surfacesOf(scene);
+    const SceneSurface surface = surfaceOf(scene);
     whitenSurfaces(scene);
     const PreparedScene prepared = prepareScene(std::move(scene), pool);
-    const TriangleColors colors = colorsByPatch(prepared, surfaces);
+    const TriangleColors colors = colorsByPatch(prepared, surface);
     Frame white, colored;
     Renderer(pool).render(prepared, camera, allChannels(kWidth, kHeight), white);
     Renderer(pool).render(prepared, camera, allChannels(kWidth, kHeight), colored);
@@ -77,7 +77,7 @@ TEST_CASE("pipeline/triangle_colors: each pixel is what it is in white, in the c
           wrong += colored.linear.at(x, y) != white.linear.at(x, y) || colored.color.at(x, y) != white.color.at(x, y);
           continue;
         }
-        const std::uint8_t color = colors.lists[colors.list_of_instance[instance]][white.triangle_id.at(x, y)];
+        const std::uint8_t color = colors[instance][white.triangle_id.at(x, y)];
         REQUIRE(color < scenes::kPartColors);
         seen.insert(color);
         const Vec4 expected = white.linear.at(x, y) * Vec4(scenes::partColor(color), 1.0F);
@@ -97,35 +97,74 @@ TEST_CASE("pipeline/triangle_colors: patches that touch differ, also across crea
   for (const char* spec : {"sphere?n=60", "teapot?n=12", "torusknot?u=200&v=24"}) {
     CAPTURE(spec);
     scenes::Scene scene = scenes::buildBuiltin(spec);
-    const std::vector<mesh::Mesh> surfaces = surfacesOf(scene);
+    const SceneSurface surface = surfaceOf(scene);
     const PreparedScene prepared = prepareScene(std::move(scene), pool);
-    const TriangleColors colors = colorsByPatch(prepared, surfaces);
-    REQUIRE(colors.lists.size() == surfaces.size());
-    for (std::size_t m = 0; m < surfaces.size(); ++m) {
-      const PreparedMesh& mesh = prepared.meshes[m];
-      REQUIRE(mesh.patches.size() > 8);
-      std::vector<std::uint32_t> part(surfaces[m].triangleCount(), grouping::kNoIndex);
+    const TriangleColors colors = colorsByPatch(prepared, surface);
+    REQUIRE(colors.size() == prepared.instances.size());
+    std::vector<std::uint32_t> part;
+    std::vector<std::uint8_t> color;
+    std::uint32_t patches_before = 0;
+    for (std::size_t i = 0; i < colors.size(); ++i) {
+      const PreparedMesh& mesh = prepared.meshes[prepared.instances[i].mesh];
+      const std::size_t first = part.size();
+      part.resize(first + surface.face_count[i], grouping::kNoIndex);
       for (std::uint32_t p = 0; p < mesh.patches.size(); ++p)
         for (std::uint32_t t = 0; t < mesh.patches[p].triangle_count; ++t)
-          part[mesh.triangle_source[mesh.patches[p].first_triangle + t]] = p;
-      CHECK(confusedFaces(surfaces[m], part, colors.lists[m]) == 0);
+          part[first + mesh.triangle_source[mesh.patches[p].first_triangle + t]] = patches_before + p;
+      patches_before += static_cast<std::uint32_t>(mesh.patches.size());
+      color.insert(color.end(), colors[i].begin(), colors[i].end());
     }
+    CHECK(patches_before > 8);
+    CHECK(confusedFaces(surface.joined, part, color) == 0);
+  }
+}
+
+TEST_CASE("pipeline/triangle_colors: patches and groups of meshes and instances that touch differ at the seam") {
+  TaskPool pool(1);
+  // Sixteen squares of a floor: eight copies of one mesh, eight of another, by turns. Each is one patch and one group.
+  scenes::Scene scene = sceneOf(mesh::makeGrid(4));
+  scene.meshes.push_back(mesh::makeGrid(4));
+  const Box3 square = mesh::boundsOf(scene.meshes[0]);
+  scene.instances.clear();
+  for (std::uint32_t i = 0; i < 16; ++i) {
+    DMat4 moved(1.0);
+    moved[3] = DVec4(DVec3(square.size()) * DVec3(i % 4, i / 4, 0), 1.0);
+    scene.instances.push_back({i % 2, 0, moved});
+  }
+  const SceneSurface surface = surfaceOf(scene);
+  GroupingOptions planar;
+  planar.method = Grouping::kPlanar;
+  planar.prefer = Prefer::kMemory;
+  const PreparedScene prepared = prepareScene(std::move(scene), pool, planar);
+  std::vector<std::uint32_t> instance_of_face;
+  for (std::uint32_t i = 0; i < 16; ++i) instance_of_face.insert(instance_of_face.end(), surface.face_count[i], i);
+  for (const bool by_group : {false, true}) {
+    CAPTURE(by_group);
+    const TriangleColors colors = by_group ? colorsByGroup(prepared, surface) : colorsByPatch(prepared, surface);
+    std::vector<std::uint8_t> color;
+    for (const auto& list : colors) {
+      CHECK(std::set<std::uint8_t>(list.begin(), list.end()).size() == 1);
+      color.insert(color.end(), list.begin(), list.end());
+    }
+    REQUIRE(color.size() == instance_of_face.size());
+    CHECK(std::count(color.begin(), color.end(), kUncolored) == 0);
+    CHECK(confusedFaces(surface.joined, instance_of_face, color) == 0);
   }
 }
 
 TEST_CASE("pipeline/triangle_colors: a flat step is one group, steps differ, and without groups there is no colour") {
   TaskPool pool(1);
-  const std::vector<mesh::Mesh> surfaces = {stair()};
+  const SceneSurface surface = surfaceOf(sceneOf(stair()));
   GroupingOptions planar;
   planar.method = Grouping::kPlanar;
   planar.prefer = Prefer::kMemory;
   planar.epsilon = 0.0;
-  const TriangleColors colors = colorsByGroup(prepareScene(sceneOf(stair()), pool, planar), surfaces);
-  REQUIRE(colors.lists.size() == 1);
-  REQUIRE(colors.lists[0].size() == surfaces[0].triangleCount());
+  const TriangleColors colors = colorsByGroup(prepareScene(sceneOf(stair()), pool, planar), surface);
+  REQUIRE(colors.size() == 1);
+  REQUIRE(colors[0].size() == surface.joined.triangleCount());
   std::set<std::uint8_t> of_steps;
   for (std::uint32_t step = 0; step < 3; ++step) {
-    const auto first = colors.lists[0].begin() + std::ptrdiff_t(step * 21 * 40);
+    const auto first = colors[0].begin() + std::ptrdiff_t(step * 21 * 40);
     std::set<std::uint8_t> seen(first, first + 20 * 40);
     // Where a patch has but few vertices of the step, they are drawn in full.
     CHECK(std::count(first, first + 20 * 40, kUncolored) < 400);
@@ -135,8 +174,8 @@ TEST_CASE("pipeline/triangle_colors: a flat step is one group, steps differ, and
     of_steps.insert(*seen.begin());
   }
   CHECK(of_steps.size() == 3);
-  const TriangleColors none = colorsByGroup(prepareScene(sceneOf(stair()), pool), surfaces);
-  for (const std::uint8_t color : none.lists[0]) CHECK(color == kUncolored);
+  const TriangleColors none = colorsByGroup(prepareScene(sceneOf(stair()), pool), surface);
+  for (const std::uint8_t color : none[0]) CHECK(color == kUncolored);
 }
 
 TEST_CASE("pipeline/triangle_colors: parts of the joined scene go to the instance that has the triangle") {
@@ -147,11 +186,11 @@ TEST_CASE("pipeline/triangle_colors: parts of the joined scene go to the instanc
   for (std::uint32_t f = 0; f < part.size(); ++f) part[f] = f;
   std::vector<std::uint32_t> color(part.size());
   for (std::uint32_t f = 0; f < color.size(); ++f) color[f] = (5 * f + 1) % scenes::kPartColors;
-  const TriangleColors colors = colorsByPart(scene, part, color);
-  REQUIRE(colors.list_of_instance.size() == 3);
+  const TriangleColors colors = colorsByPart(part, color, faceCountsOf(scene));
+  REQUIRE(colors.size() == 3);
   std::size_t at = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const std::vector<std::uint8_t>& list = colors.lists[colors.list_of_instance[i]];
+    const std::vector<std::uint8_t>& list = colors[i];
     REQUIRE(list.size() == scene.meshes[scene.instances[i].mesh].triangleCount());
     for (const std::uint8_t c : list) CHECK(c == color[at++]);
   }

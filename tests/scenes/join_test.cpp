@@ -72,4 +72,33 @@ TEST_CASE("scenes/join: nothing drawn is an empty mesh") {
   CHECK(joinedMesh({}).positions.empty());
 }
 
+TEST_CASE("scenes/join: a mesh per instance has the places and triangles of the joined mesh, in a space of its own") {
+  Scene scene;
+  scene.meshes = {triangle(true), triangle(false)};
+  scene.meshes[0].normals.assign(3, glm::normalize(Vec3(1, 0, 1)));
+  scene.materials.resize(2);
+  scene.instances = {{1, 1, DMat4(1.0)}, {0, 0, scaled(2, 1, 3)}, {0, 1, scaled(-1, 1, 1)}};
+  const mesh::Mesh joined = joinedMesh(scene);
+  const DMat4 turn(DVec4(1, 0, 0, 0), DVec4(0, 0, -1, 0), DVec4(0, 1, 0, 0), DVec4(0, 0, 0, 1));
+  for (const bool turned : {false, true}) {
+    Scene asked = scene;
+    if (turned)
+      for (Instance& instance : asked.instances) instance.world_from_object = turn * instance.world_from_object;
+    const Scene apart = withMeshPerInstance(asked, turned ? turn : DMat4(1.0));
+    REQUIRE(apart.meshes.size() == 3);
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      const Instance& instance = apart.instances[i];
+      CHECK(instance.mesh == i);
+      CHECK(instance.material == scene.instances[i].material);
+      CHECK(instance.world_from_object == (turned ? turn : DMat4(1.0)));
+      CHECK(apart.meshes[i].normals.empty() == scene.meshes[scene.instances[i].mesh].normals.empty());
+      for (std::size_t k = 0; k < 3; ++k)
+        CHECK(apart.meshes[i].positions[apart.meshes[i].triangles[0][k]] == joined.positions[joined.triangles[i][k]]);
+    }
+    CHECK(normalOf(apart.meshes[2], 0).z == doctest::Approx(1.0));
+    CHECK(boundsOf(apart).lo == boundsOf(asked).lo);
+    CHECK(boundsOf(apart).hi == boundsOf(asked).hi);
+  }
+}
+
 }  // namespace sheaf::scenes

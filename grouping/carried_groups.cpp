@@ -1,0 +1,161 @@
+#include "grouping/carried_groups.h"
+
+#include <algorithm>
+#include <cassert>
+#include <tuple>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "grouping/group_assembly.h"
+#include "grouping/position_hash.h"
+
+namespace sheaf::grouping {
+namespace {
+
+/// A vertex that is to be a member, and where its parameters stand.
+struct Carried {
+  std::uint32_t patch = 0;  ///< groups are split by patch
+  std::uint32_t group = 0;  ///< before
+  std::uint32_t vertex = 0;
+  std::uint32_t member = 0;  ///< into the members before
+};
+
+bool isBefore(const Carried& a, const Carried& b) {
+  return std::tie(a.patch, a.group, a.vertex) < std::tie(b.patch, b.group, b.vertex);
+}
+
+void copySettings(const VertexGroups& from, VertexGroups& to) {
+  to.planes = from.planes;
+  to.kind = from.kind;
+  to.metric = from.metric;
+  to.limit = from.limit;
+  to.dimensions = from.dimensions;
+  to.segment_only = from.segment_only;
+  to.interrupted = from.interrupted;
+  to.epsilon = from.epsilon;
+  to.extent = from.extent;
+  to.stats.search_ms = from.stats.search_ms;
+}
+
+/// Makes groups of the members. `to` has states and positions. groupOf(member) is the group that begins with it.
+template <typename GroupOf>
+void gather(const VertexGroups& from, std::vector<Carried> members, const GroupOf& groupOf, VertexGroups& to) {
+  std::ranges::sort(members, isBefore);
+  const Carried* last = nullptr;
+  for (const Carried& c : members) {
+    if (last == nullptr || last->group != c.group || last->patch != c.patch) {
+      VertexGroup& group = to.groups.emplace_back(groupOf(c));
+      group.first_member = static_cast<std::uint32_t>(to.members.size());
+      group.member_count = 0;
+    }
+    last = &c;
+    ++to.groups.back().member_count;
+    to.members.push_back(c.vertex);
+    to.s.push_back(from.s[c.member]);
+    to.t.push_back(from.t[c.member]);
+    to.state[c.vertex] = VertexState::kGrouped;
+    to.owner[c.vertex] = static_cast<std::uint32_t>(to.groups.size() - 1);
+  }
+  dropUngrouped(to);  // narrows the ranges to the members that are here and marks who defines
+}
+
+/// #V, where a grouped vertex stands among the members.
+std::vector<std::uint32_t> memberOfVertex(const VertexGroups& groups) {
+  std::vector<std::uint32_t> member(groups.state.size(), kNoIndex);
+  for (std::uint32_t m = 0; m < groups.members.size(); ++m) member[groups.members[m]] = m;
+  return member;
+}
+
+/// Who is at a place: the patch and the group, while there is only one of either.
+struct Tenant {
+  std::uint32_t patch = kNoIndex;
+  std::uint32_t group = kNoIndex;
+  bool is_alone = true;
+};
+
+std::unordered_map<Vec3, Tenant, PositionHash> tenantsOf(const VertexGroups& groups, const PatchSet& set) {
+  std::unordered_map<Vec3, Tenant, PositionHash> tenants;
+  tenants.reserve(groups.state.size());
+  for (std::uint32_t p = 0; p < set.patches.size(); ++p)
+    for (const std::uint32_t v : set.verticesOf(set.patches[p])) {
+      const auto [entry, is_new] = tenants.try_emplace(groups.positions[v], Tenant{p, groups.owner[v], true});
+      if (!is_new && (entry->second.patch != p || entry->second.group != groups.owner[v]))
+        entry->second.is_alone = false;
+    }
+  return tenants;
+}
+
+/// The direction that most of the members go across.
+std::uint32_t commonPlane(const VertexGroups& groups, std::span<const Carried> members) {
+  std::vector<std::uint32_t> count(groups.planes.size(), 0);
+  for (const Carried& c : members) ++count[groups.groups[c.group].plane];
+  return static_cast<std::uint32_t>(std::ranges::max_element(count) - count.begin());
+}
+
+}  // namespace
+
+VertexGroups carriedOver(const VertexGroups& groups, const mesh::Mesh& mesh, std::span<const std::uint32_t> source) {
+  assert(source.size() == mesh.vertexCount());
+  VertexGroups out;
+  copySettings(groups, out);
+  out.positions = mesh.positions;
+  out.state.assign(source.size(), VertexState::kUnused);
+  out.owner.assign(source.size(), kNoIndex);
+  const std::vector<std::uint32_t> member = memberOfVertex(groups);
+  std::vector<std::uint32_t> copy(groups.state.size(), kNoIndex);
+  std::vector<Carried> members;
+  for (std::uint32_t v = 0; v < source.size(); ++v) {
+    const std::uint32_t from = source[v];
+    if (from == kNoIndex) continue;
+    out.positions[v] = groups.positions[from];
+    out.state[v] = VertexState::kFree;
+    if (copy[from] == kNoIndex) copy[from] = v;
+    if (member[from] != kNoIndex) members.push_back({0, groups.owner[from], v, member[from]});
+  }
+  const auto copyOf = [&](std::uint32_t v) { return v == kNoIndex ? kNoIndex : copy[v]; };
+  const auto groupOf = [&](const Carried& c) {
+    VertexGroup group = groups.groups[c.group];
+    group.origin = copyOf(group.origin);
+    group.end = copyOf(group.end);
+    return group;
+  };
+  gather(groups, std::move(members), groupOf, out);
+  return out;
+}
+
+VertexGroups framedByPatch(const VertexGroups& groups, const PatchSet& patches) {
+  assert(groups.kind == GroupKind::kPlane);
+  VertexGroups out;
+  copySettings(groups, out);
+  out.positions = groups.positions;
+  out.state = groups.state;
+  out.owner.assign(groups.state.size(), kNoIndex);
+  for (VertexState& state : out.state)
+    if (state != VertexState::kUnused) state = VertexState::kFree;
+  out.planes.assign(patches.patches.size(), PlaneFrame{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}});
+  const std::vector<std::uint32_t> member = memberOfVertex(groups);
+  const auto tenants = tenantsOf(groups, patches);
+  std::vector<Carried> members, inside;
+  for (std::uint32_t p = 0; p < patches.patches.size(); ++p) {
+    inside.clear();
+    for (const std::uint32_t v : patches.verticesOf(patches.patches[p]))
+      if (member[v] != kNoIndex && tenants.at(groups.positions[v]).is_alone)
+        inside.push_back({p, groups.owner[v], v, member[v]});
+    if (inside.empty()) continue;
+    const std::uint32_t plane = commonPlane(groups, inside);
+    out.planes[p] = groups.planes[plane];
+    std::erase_if(inside, [&](const Carried& c) { return groups.groups[c.group].plane != plane; });
+    members.insert(members.end(), inside.begin(), inside.end());
+  }
+  const auto groupOf = [&](const Carried& c) {
+    VertexGroup group = groups.groups[c.group];
+    group.plane = c.patch;
+    group.origin = kNoIndex;
+    return group;
+  };
+  gather(groups, std::move(members), groupOf, out);
+  return out;
+}
+
+}  // namespace sheaf::grouping

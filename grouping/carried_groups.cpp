@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cassert>
 #include <tuple>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "grouping/group_assembly.h"
-#include "grouping/position_hash.h"
+#include "mesh/weld.h"
 
 namespace sheaf::grouping {
 namespace {
@@ -71,19 +70,25 @@ std::vector<std::uint32_t> memberOfVertex(const VertexGroups& groups) {
 struct Tenant {
   std::uint32_t patch = kNoIndex;
   std::uint32_t group = kNoIndex;
+  bool is_known = false;
   bool is_alone = true;
 };
 
-std::unordered_map<Vec3, Tenant, PositionHash> tenantsOf(const VertexGroups& groups, const PatchSet& set) {
-  std::unordered_map<Vec3, Tenant, PositionHash> tenants;
-  tenants.reserve(groups.state.size());
+/// #V, whether all vertices at the place of this one are in one patch and one group.
+std::vector<bool> aloneAtPlace(const VertexGroups& groups, const PatchSet& set) {
+  const std::vector<std::uint32_t> place = mesh::firstAtSamePlace(groups.positions);
+  std::vector<Tenant> tenants(place.size());
   for (std::uint32_t p = 0; p < set.patches.size(); ++p)
     for (const std::uint32_t v : set.verticesOf(set.patches[p])) {
-      const auto [entry, is_new] = tenants.try_emplace(groups.positions[v], Tenant{p, groups.owner[v], true});
-      if (!is_new && (entry->second.patch != p || entry->second.group != groups.owner[v]))
-        entry->second.is_alone = false;
+      Tenant& tenant = tenants[place[v]];
+      if (!tenant.is_known)
+        tenant = {p, groups.owner[v], true, true};
+      else if (tenant.patch != p || tenant.group != groups.owner[v])
+        tenant.is_alone = false;
     }
-  return tenants;
+  std::vector<bool> alone(place.size());
+  for (std::size_t v = 0; v < place.size(); ++v) alone[v] = tenants[place[v]].is_alone;
+  return alone;
 }
 
 /// The direction that most of the members go across.
@@ -135,13 +140,12 @@ VertexGroups framedByPatch(const VertexGroups& groups, const PatchSet& patches) 
     if (state != VertexState::kUnused) state = VertexState::kFree;
   out.planes.assign(patches.patches.size(), PlaneFrame{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}});
   const std::vector<std::uint32_t> member = memberOfVertex(groups);
-  const auto tenants = tenantsOf(groups, patches);
+  const std::vector<bool> alone = aloneAtPlace(groups, patches);
   std::vector<Carried> members, inside;
   for (std::uint32_t p = 0; p < patches.patches.size(); ++p) {
     inside.clear();
     for (const std::uint32_t v : patches.verticesOf(patches.patches[p]))
-      if (member[v] != kNoIndex && tenants.at(groups.positions[v]).is_alone)
-        inside.push_back({p, groups.owner[v], v, member[v]});
+      if (member[v] != kNoIndex && alone[v]) inside.push_back({p, groups.owner[v], v, member[v]});
     if (inside.empty()) continue;
     const std::uint32_t plane = commonPlane(groups, inside);
     out.planes[p] = groups.planes[plane];

@@ -3,9 +3,8 @@
 //   Out    what a loop over all faces would find, to the bit; of equals the face of the lowest number
 //   Method from the roots down, nearer part first; a cluster whose oriented box is too far away is left out. Boxes are
 //          taken a little larger than they are, so that round-off never hides a face
-//   Knows  faces without area or with a corner that is not finite: no query but the closest point finds the former,
-//   none
-//          the latter
+//   Knows  faces without area, which only the closest point finds, and faces with a corner that is not finite, which
+//          no query finds
 #pragma once
 
 #include <cstddef>

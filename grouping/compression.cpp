@@ -18,9 +18,13 @@ constexpr double kRecordBits = 32.0 + 8.0 + 32.0;
 // Three angles of a frame.
 constexpr double kFrameBits = 3.0 * 16.0;
 
-// Those of the axes need not be stored.
+// Frames that some group is in. Those of the axes need not be stored, nor the frame of a patch without groups.
 double frameBits(const VertexGroups& groups) {
-  return groups.planes == axisPlanes() ? 0.0 : kFrameBits * static_cast<double>(groups.planes.size());
+  if (groups.planes == axisPlanes()) return 0.0;
+  std::vector<bool> used(groups.planes.size(), false);
+  for (const VertexGroup& g : groups.groups)
+    if (g.kind == GroupKind::kPlane) used[g.plane] = true;
+  return kFrameBits * static_cast<double>(std::count(used.begin(), used.end(), true));
 }
 
 // Place of each vertex in an order that puts vertices of neighbouring triangles together; unused vertices come last.

@@ -19,9 +19,10 @@ struct CompressionFigures {
   double coded = 0.0;            ///< quantised positions through meshoptimizer's vertex codec
 
   double grouped_parameters = 0.0;  ///< bits for each parameter of each grouped vertex
-  double grouped_retained = 0.0;    ///< retained positions and kept bases, 3 * bits each, records of groups, frames
-  double grouped_order = 0.0;       ///< which vertices a group has; 0 if the mesh is renumbered by group
-  double grouped_coded = 0.0;       ///< parameters and retained positions through the same codec, with the records
+  double grouped_retained =
+      0.0;                     ///< retained positions and kept bases, 3 * bits each, records of groups, frames in use
+  double grouped_order = 0.0;  ///< which vertices a group has; 0 if the mesh is renumbered by group
+  double grouped_coded = 0.0;  ///< parameters and retained positions through the same codec, with the records
 
   double grouped() const { return grouped_parameters + grouped_retained; }
 };

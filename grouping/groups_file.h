@@ -1,11 +1,9 @@
 // grouping/groups_file: vertex groups as a file, conventionally *.sheaf.
 //   Form   sealed_file.h with kGroupsFileMagic, then the groups. Written once per vertex: the position of a retained
-//   one,
-//          the parameters of a grouped one; everything else follows from these
+//          one, the parameters of a grouped one; everything else follows from these
 //   Keeps  loading what was saved gives an equal value, if the parameters are not quantised
-//   Trust  none: a file with any byte changed is refused by its checksum, and one with a right checksum is checked
-//   field
-//          by field and as a whole (findInconsistency) before it is returned. Whether it belongs to a mesh says the
+//   Trust  none: a file with any byte changed is refused by its checksum; one with a right checksum is checked field by
+//          field and as a whole (findInconsistency) before it is returned. Whether it belongs to a mesh says the
 //          checksum of the mesh
 #pragma once
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -11,8 +10,8 @@
 #include "grouping/cluster_shapes.h"
 #include "grouping/group_assembly.h"
 #include "grouping/group_quality.h"
-#include "grouping/position_hash.h"
 #include "grouping/quadric.h"
+#include "mesh/weld.h"
 
 namespace sheaf::grouping {
 namespace {
@@ -27,29 +26,37 @@ void claim(std::uint32_t& owner, std::uint32_t by) {
     owner = kSeveral;
 }
 
-// #V, whether a vertex may move: it is inside one patch, and no other vertex lies where it does. Those stand at seams
-// of attributes: one might be retained and the other go to the grid of a plane.
+// #V, whether a vertex may move: it is inside one patch, and no other vertex in use lies where it does. Those stand at
+// seams of attributes: one might be retained and the other go to the grid of a plane.
 std::vector<bool> innerVertices(const mesh::Mesh& mesh, const PatchSet& set) {
   std::vector<std::uint32_t> patch_of(mesh.vertexCount(), kNoIndex);
   for (std::uint32_t p = 0; p < set.patches.size(); ++p)
     for (const std::uint32_t v : set.verticesOf(set.patches[p])) claim(patch_of[v], p);
-  std::unordered_map<Vec3, std::uint32_t, PositionHash> vertex_at;
-  vertex_at.reserve(mesh.vertexCount());
+  const std::vector<std::uint32_t> place = mesh::firstAtSamePlace(mesh.positions);
+  std::vector<std::uint32_t> vertex_at(mesh.vertexCount(), kNoIndex);
   for (std::uint32_t v = 0; v < patch_of.size(); ++v)
-    if (patch_of[v] != kNoIndex) claim(vertex_at.try_emplace(mesh.positions[v], kNoIndex).first->second, v);
+    if (patch_of[v] != kNoIndex) claim(vertex_at[place[v]], v);
   std::vector<bool> inner(mesh.vertexCount(), false);
-  for (std::uint32_t v = 0; v < patch_of.size(); ++v)
-    inner[v] = patch_of[v] < kSeveral && vertex_at.at(mesh.positions[v]) == v;
+  for (std::uint32_t v = 0; v < patch_of.size(); ++v) inner[v] = patch_of[v] < kSeveral && vertex_at[place[v]] == v;
   return inner;
 }
+
+// How far vertices may move.
+struct Reach {
+  double eps;                        // by the distance metric, in the unit of the mesh
+  std::span<const Sym3> ellipsoids;  // #V by the quadric metric, else empty
+
+  double along(const DVec3& normal, std::uint32_t v) const {
+    if (ellipsoids.empty()) return eps;
+    return std::sqrt(std::max(0.0, glm::dot(normal, ellipsoids[v].times(normal))));
+  }
+};
 
 // Finds the planes of one patch.
 class PatchSearch {
  public:
-  // eps, ellipsoids  as for groupPlanar(); ellipsoids are empty for the distance metric
-  PatchSearch(const mesh::Mesh& mesh, const std::vector<bool>& inner, double eps, std::span<const Sym3> ellipsoids,
-              std::uint32_t min_members)
-      : mesh_(mesh), inner_(inner), eps_(eps), ellipsoids_(ellipsoids), min_members_(min_members) {}
+  PatchSearch(const mesh::Mesh& mesh, const std::vector<bool>& inner, const Reach& reach, std::uint32_t min_members)
+      : mesh_(mesh), inner_(inner), reach_(reach), min_members_(min_members) {}
 
   // Writes the seeds' numbers within the patch to `owner` of their members.
   std::vector<Findings::Seed> search(std::span<const std::uint32_t> vertices, const ClusterShape& shape,
@@ -78,18 +85,13 @@ class PatchSearch {
     std::uint32_t members = 0;
   };
 
-  double reachOf(std::uint32_t v, const DVec3& normal) const {
-    if (ellipsoids_.empty()) return eps_;
-    return std::sqrt(std::max(0.0, glm::dot(normal, ellipsoids_[v].times(normal))));
-  }
-
   void read(std::span<const std::uint32_t> vertices, const ClusterShape& shape) {
     const DVec3 normal(shape.frame.normal), center(shape.center);
     candidates_.clear();
     for (const std::uint32_t v : vertices) {
       const bool moves = inner_[v];
-      candidates_.push_back(
-          {v, glm::dot(DVec3(mesh_.positions[v]) - center, normal), moves ? reachOf(v, normal) : -1.0, moves, true});
+      candidates_.push_back({v, glm::dot(DVec3(mesh_.positions[v]) - center, normal),
+                             moves ? reach_.along(normal, v) : -1.0, moves, true});
     }
   }
 
@@ -133,38 +135,46 @@ class PatchSearch {
 
   const mesh::Mesh& mesh_;
   const std::vector<bool>& inner_;
-  double eps_;
-  std::span<const Sym3> ellipsoids_;
+  Reach reach_;
   std::uint32_t min_members_;
   std::vector<Candidate> candidates_;
   std::vector<double> begins_, ends_;
 };
 
-// Finds groups of all patches, each vertex being inside one at most, and joins them in the order of the patches.
-Findings searchPatches(const mesh::Mesh& mesh, const PatchSet& set, double eps, std::span<const Sym3> ellipsoids,
-                       std::uint32_t min_members, std::vector<PlaneFrame>& planes, TaskPool& pool) {
+// What is found in each patch by itself.
+struct PatchPlanes {
+  std::vector<PlaneFrame> frames;
+  std::vector<std::vector<Findings::Seed>> seeds;
+  std::vector<std::uint32_t> owner;  // #V: of a member, its seed's number within the patch; else kNoIndex
+};
+
+PatchPlanes searchPatches(const PatchSearch& one_patch, const mesh::Mesh& mesh, const PatchSet& set, TaskPool& pool) {
   constexpr std::size_t kPatchesPerPiece = 16;
   const std::size_t count = set.patches.size();
-  const std::vector<bool> inner = innerVertices(mesh, set);
-  std::vector<std::vector<Findings::Seed>> seeds(count);
-  Findings findings;
-  findings.owner.assign(mesh.vertexCount(), kNoIndex);
-  planes.resize(count);
+  PatchPlanes found{std::vector<PlaneFrame>(count), std::vector<std::vector<Findings::Seed>>(count),
+                    std::vector<std::uint32_t>(mesh.vertexCount(), kNoIndex)};
   pool.parallelFor(static_cast<int>((count + kPatchesPerPiece - 1) / kPatchesPerPiece), [&](int piece, int) {
-    PatchSearch search(mesh, inner, eps, ellipsoids, min_members);
+    PatchSearch search = one_patch;
     const std::size_t begin = static_cast<std::size_t>(piece) * kPatchesPerPiece;
     for (std::size_t p = begin; p < std::min(count, begin + kPatchesPerPiece); ++p) {
       const Patch& patch = set.patches[p];
       const ClusterShape shape = shapeOfFaces(mesh, set.trianglesOf(patch));
-      planes[p] = shape.frame;
-      seeds[p] = search.search(set.verticesOf(patch), shape, static_cast<std::uint32_t>(p), findings.owner);
+      found.frames[p] = shape.frame;
+      found.seeds[p] = search.search(set.verticesOf(patch), shape, static_cast<std::uint32_t>(p), found.owner);
     }
   });
-  for (std::size_t p = 0; p < count; ++p) {
+  return found;
+}
+
+// Joins the seeds of all patches, in the order of the patches. A vertex has moved in one patch at most.
+Findings joinSeeds(const PatchSet& set, const std::vector<bool>& inner, PatchPlanes found) {
+  Findings findings;
+  findings.owner = std::move(found.owner);
+  for (std::size_t p = 0; p < set.patches.size(); ++p) {
     const auto first = static_cast<std::uint32_t>(findings.seeds.size());
     for (const std::uint32_t v : set.verticesOf(set.patches[p]))
       if (inner[v] && findings.owner[v] != kNoIndex) findings.owner[v] += first;
-    findings.seeds.insert(findings.seeds.end(), seeds[p].begin(), seeds[p].end());
+    findings.seeds.insert(findings.seeds.end(), found.seeds[p].begin(), found.seeds[p].end());
   }
   return findings;
 }
@@ -186,8 +196,11 @@ VertexGroups groupInPatches(const mesh::Mesh& mesh, const PatchSet& patches, con
   const double eps = out.epsilon * out.extent;
   const std::vector<Sym3> ellipsoids =
       out.metric == Metric::kQuadric ? vertexEllipsoids(mesh, eps, out.limit) : std::vector<Sym3>{};
-  Findings findings = searchPatches(mesh, patches, eps, ellipsoids, options.min_members, out.planes, pool);
-  assembleGroups(mesh.positions, in_use, std::move(findings), Placement(ellipsoids), out);
+  const std::vector<bool> inner = innerVertices(mesh, patches);
+  const PatchSearch search(mesh, inner, Reach{eps, ellipsoids}, options.min_members);
+  PatchPlanes found = searchPatches(search, mesh, patches, pool);
+  out.planes = std::move(found.frames);
+  assembleGroups(mesh.positions, in_use, joinSeeds(patches, inner, std::move(found)), Placement(ellipsoids), out);
   finishGroups(mesh, options.restore_flipped, start_ns, out);
   return out;
 }

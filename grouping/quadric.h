@@ -58,7 +58,8 @@ inline constexpr double kDegenerateRadius = 0.1;
 inline constexpr double kSafeReach = 0.4999;
 
 /// A of every vertex: unit normals of the faces around it, and `boundary_weight` times the planes through its open
-/// edges that stand upright on their face. return  #V; 0 for a vertex without faces that have area
+/// edges that stand upright on their face.
+/// return  #V; 0 for a vertex without faces that have area
 std::vector<Sym3> vertexQuadrics(const mesh::Mesh& mesh, double boundary_weight);
 
 /// R of every vertex's ellipsoid, limited. Always positive definite, unless eps or an altitude is 0.

@@ -116,6 +116,15 @@ std::size_t weldVertices(Mesh& mesh) {
   return before - kept;
 }
 
+std::vector<std::uint32_t> firstAtSamePlace(std::vector<Vec3> positions) {
+  Mesh mesh;
+  mesh.positions = std::move(positions);
+  std::vector<std::uint32_t> first(mesh.vertexCount());
+  VertexTable table(mesh);
+  for (std::uint32_t v = 0; v < first.size(); ++v) first[v] = table.findOrAdd(v, v);
+  return first;
+}
+
 Mesh surfaceOf(Mesh mesh) {
   mesh.normals = {};
   mesh.texcoords = {};

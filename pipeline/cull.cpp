@@ -88,9 +88,9 @@ InstanceView viewInstance(const scenes::Instance& instance, const Box3& bounds_o
   return out;
 }
 
-PatchVisibility classifyPatch(const grouping::Patch& patch, const InstanceView& view, bool back_faces_culled) {
+PatchVisibility classifyPatch(const grouping::Patch& patch, const InstanceView& view) {
   if (isOutside(view.view_planes, patch.bounds)) return PatchVisibility::kOutside;
-  if (back_faces_culled && isBackFacing(patch, view.eye_object)) return PatchVisibility::kBackFacing;
+  if (view.culls_back && isBackFacing(patch, view.eye_object)) return PatchVisibility::kBackFacing;
   const Box3& box = patch.bounds;
   bool clips = crosses(view.view_planes[4], box) || crosses(view.view_planes[5], box);
   for (const Vec4& plane : view.guard_planes) clips = clips || crosses(plane, box);

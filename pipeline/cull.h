@@ -47,7 +47,8 @@ struct InstanceView {
   RunPlanes run_planes;  ///< of object space
   Vec4 eye_object;       ///< as View::eye_world
   bool visible = true;
-  bool mirrored = false;  ///< the transform turns the winding round
+  bool mirrored = false;   ///< the transform turns the winding round
+  bool culls_back = true;  ///< back faces are not drawn; the material decides, viewInstance() leaves it true
 };
 
 /// cull = false leaves `visible` true.
@@ -61,9 +62,9 @@ enum class PatchVisibility : std::uint8_t {
   kInside,       ///< wholly in view
 };
 
-/// back_faces_culled: false skips the cone test. Conservative: a visible patch is never kOutside. The plain reference
-/// of the two functions below.
-PatchVisibility classifyPatch(const grouping::Patch& patch, const InstanceView& view, bool back_faces_culled);
+/// By box, and by cone where back faces are culled. Conservative: a visible patch is never kOutside. The plain
+/// reference of the two functions below.
+PatchVisibility classifyPatch(const grouping::Patch& patch, const InstanceView& view);
 
 /// What the view says of the boxes of a block, a bit for each.
 struct BoxBits {

@@ -62,19 +62,19 @@ void prefetchVertices(const PatchVertices& next) {
 // Draws one patch of one instance.
 class PatchDrawer {
  public:
-  PatchDrawer(const PreparedMesh& mesh, std::uint32_t patch, const InstanceView& view, bool cull_back,
-              std::uint32_t surface, const Viewport& viewport, GeometryWorker& worker)
+  PatchDrawer(const DrawnPatch& drawn, const PreparedMesh& mesh, const InstanceView& view, const Viewport& viewport,
+              GeometryWorker& worker)
       : mesh_(mesh),
-        patch_(mesh.patches[patch]),
-        at_(mesh.vertices.patches[patch]),
+        patch_(mesh.patches[drawn.patch]),
+        stored_(mesh.vertices.patches[drawn.patch]),
         view_(view),
         viewport_(viewport),
         worker_(worker) {
     for (std::size_t i = 0; i < 3; ++i) triangles_.corner[i] = mesh.corners[i].data() + patch_.first_triangle;
     triangles_.source = mesh.triangle_source.data() + patch_.first_triangle;
     triangles_.first_vertex = patch_.first_vertex;
-    triangles_.surface = surface;
-    triangles_.facing = {view.mirrored ? 1 : -1, cull_back};
+    triangles_.surface = drawn.instance;
+    triangles_.facing = {view.mirrored ? 1 : -1, view.culls_back};
     worker.counters.triangles_assembled += patch_.triangle_count;
   }
 
@@ -110,13 +110,13 @@ class PatchDrawer {
 
  private:
   std::span<const grouping::VertexRun> runs() const {
-    return std::span(mesh_.vertices.runs).subspan(at_.first_run, at_.run_count);
+    return std::span(mesh_.vertices.runs).subspan(stored_.first_run, stored_.run_count);
   }
   bool isRejected(std::size_t run) const { return (worker_.run_codes[run].must & kOutsideBits) != 0; }
   bool needsCodes(std::size_t run) const { return (worker_.run_codes[run].may & kClipBits) != 0; }
 
   void transformWhole() {
-    transformPatch(mesh_.vertices, at_, view_.clip_from_object, viewport_, worker_.projected);
+    transformPatch(mesh_.vertices, stored_, view_.clip_from_object, viewport_, worker_.projected);
     for (const grouping::VertexRun& run : runs()) countTransformed(run, run.vertex_count);
   }
 
@@ -128,13 +128,13 @@ class PatchDrawer {
 
   // A patch of one run has been tested as a whole already.
   void testRuns(bool may_clip) {
-    if (at_.run_count == 1) {
+    if (stored_.run_count == 1) {
       worker_.run_codes[0] = {0, kOutsideBits | kClipBits};
       return;
     }
     codeAllRuns();
-    worker_.counters.groups_tested += at_.run_count;
-    for (std::size_t r = 0; r < at_.run_count; ++r) {
+    worker_.counters.groups_tested += stored_.run_count;
+    for (std::size_t r = 0; r < stored_.run_count; ++r) {
       // The patch's box has a slack of its own; what it says of clipping holds.
       if (!may_clip) worker_.run_codes[r].may &= ~kClipBits;
       if (isRejected(r))
@@ -147,33 +147,33 @@ class PatchDrawer {
 
   // Vertices in full are in object space, and their run is the first.
   void codeAllRuns() {
-    if (at_.frame == grouping::kNoIndex) return codeRuns(runs(), view_.run_planes, worker_.run_codes.data());
+    if (stored_.frame == grouping::kNoIndex) return codeRuns(runs(), view_.run_planes, worker_.run_codes.data());
     const std::size_t in_full = runs()[0].kind == grouping::RunKind::kFull ? 1 : 0;
     codeRuns(runs().first(in_full), view_.run_planes, worker_.run_codes.data());
-    const RunPlanes planes = runPlanes(clipFromPlanes(mesh_.vertices, at_, view_.clip_from_object), viewport_);
+    const RunPlanes planes = runPlanes(clipFromPlanes(mesh_.vertices, stored_, view_.clip_from_object), viewport_);
     codeRuns(runs().subspan(in_full), planes, worker_.run_codes.data() + in_full);
   }
 
   void transformKept() {
-    RunStart start(at_);
-    for (std::size_t r = 0; r < at_.run_count; ++r) {
+    RunStart start(stored_);
+    for (std::size_t r = 0; r < stored_.run_count; ++r) {
       const grouping::VertexRun& run = runs()[r];
-      if (!isRejected(r)) transform(run, start, 0, run.vertex_count);
+      if (!isRejected(r)) transform({run, start, 0, run.vertex_count});
       start.skip(run);
     }
   }
 
-  void transform(const grouping::VertexRun& run, const RunStart& start, std::uint32_t begin, std::uint32_t end) {
-    transformRun(mesh_.vertices, at_, run, start, begin, end, view_.clip_from_object, worker_.clip);
-    projectVertices(worker_.clip, start.vertex + begin, start.vertex + end, viewport_, worker_.projected);
-    countTransformed(run, end - begin);
+  void transform(const RunPiece& piece) {
+    transformRun(mesh_.vertices, stored_, piece, view_.clip_from_object, worker_.clip);
+    projectVertices(worker_.clip, piece.firstVertex(), piece.endVertex(), viewport_, worker_.projected);
+    countTransformed(piece.run, piece.end - piece.begin);
   }
 
   // Rejected and accepted runs give their codes to all members; in the others each vertex is coded, after which such a
   // run may prove to be one or the other.
   void codeVertices() {
     std::uint32_t first = 0;
-    for (std::size_t r = 0; r < at_.run_count; ++r) {
+    for (std::size_t r = 0; r < stored_.run_count; ++r) {
       const std::uint32_t last = first + runs()[r].vertex_count;
       const bool untransformed = isRejected(r);
       worker_.run_untransformed[r] = untransformed;
@@ -208,7 +208,7 @@ class PatchDrawer {
   void sortTriangles() {
     undecided_count_ = 0;
     std::uint32_t first = 0;
-    for (std::size_t r = 0; r < at_.run_count; ++r) {
+    for (std::size_t r = 0; r < stored_.run_count; ++r) {
       const std::uint32_t count = runs()[r].triangle_count;
       if (isRejected(r))
         worker_.counters.triangles_outside += count;
@@ -242,15 +242,15 @@ class PatchDrawer {
     std::array<bool, kMaxPatchVertices> needed{};
     for (std::uint32_t i = 0; i < undecided_count_; ++i)
       for (const std::uint32_t v : cornersOf(worker_.undecided[i])) needed[v] = true;
-    RunStart start(at_);
-    for (std::size_t r = 0; r < at_.run_count; ++r) {
+    RunStart start(stored_);
+    for (std::size_t r = 0; r < stored_.run_count; ++r) {
       const grouping::VertexRun& run = runs()[r];
       for (std::uint32_t begin = 0; worker_.run_untransformed[r] && begin < run.vertex_count; begin += kRebuiltAtOnce) {
-        const std::uint32_t end = std::min<std::uint32_t>(begin + kRebuiltAtOnce, run.vertex_count);
-        const auto first = needed.begin() + start.vertex;
-        if (std::find(first + begin, first + end, true) == first + end) continue;
-        transform(run, start, begin, end);
-        codeExactly(start.vertex + begin, start.vertex + end);
+        const RunPiece piece{run, start, begin, std::min<std::uint32_t>(begin + kRebuiltAtOnce, run.vertex_count)};
+        const auto end = needed.begin() + piece.endVertex();
+        if (std::find(needed.begin() + piece.firstVertex(), end, true) == end) continue;
+        transform(piece);
+        codeExactly(piece.firstVertex(), piece.endVertex());
       }
       start.skip(run);
     }
@@ -309,7 +309,7 @@ class PatchDrawer {
   // The triangles of accepted runs, as few and long stretches as possible, then those that were picked.
   void setUpUnclipped() {
     std::uint32_t begin = 0, end = 0;
-    for (std::size_t r = 0; r < at_.run_count; ++r) {
+    for (std::size_t r = 0; r < stored_.run_count; ++r) {
       const std::uint32_t count = runs()[r].triangle_count;
       if (isRejected(r) || needsCodes(r)) {
         setUp(begin, end);
@@ -343,7 +343,7 @@ class PatchDrawer {
 
   const PreparedMesh& mesh_;
   const grouping::Patch& patch_;
-  const grouping::PatchRuns& at_;
+  const grouping::PatchRuns& stored_;  // where the patch's vertices are
   const InstanceView& view_;
   const Viewport& viewport_;
   GeometryWorker& worker_;
@@ -356,14 +356,14 @@ class PatchDrawer {
 
 }  // namespace
 
-void drawPatch(const PreparedMesh& mesh, std::uint32_t patch, PatchVisibility seen, const InstanceView& view,
-               bool cull_back, std::uint32_t surface, const Viewport& viewport, GeometryWorker& worker) {
-  PatchDrawer drawer(mesh, patch, view, cull_back, surface, viewport, worker);
-  const bool tests_runs = mesh.vertices.patches[patch].run_count > 1;
-  if (seen == PatchVisibility::kInside || (seen == PatchVisibility::kAcrossSides && !tests_runs))
+void drawPatch(const DrawnPatch& drawn, const PreparedMesh& mesh, const InstanceView& view, const Viewport& viewport,
+               GeometryWorker& worker) {
+  PatchDrawer drawer(drawn, mesh, view, viewport, worker);
+  const bool tests_runs = mesh.vertices.patches[drawn.patch].run_count > 1;
+  if (drawn.seen == PatchVisibility::kInside || (drawn.seen == PatchVisibility::kAcrossSides && !tests_runs))
     drawer.drawWhole();
   else
-    drawer.drawAcrossView(seen == PatchVisibility::kStraddling);
+    drawer.drawAcrossView(drawn.seen == PatchVisibility::kStraddling);
   drawer.addCounts();
 }
 

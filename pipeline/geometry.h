@@ -29,7 +29,7 @@ struct GeometryWorker {
   raster::Binner binner;
   StageClock clock;
   Counters counters;
-  std::vector<DrawnPatch> drawn;
+  CulledPatches culled;
   PatchVertices next;  ///< asked for while a patch is set up, to be in the caches when their turn comes
   ClipVertices clip;
   ProjectedVertices projected;
@@ -41,8 +41,9 @@ struct GeometryWorker {
   std::vector<raster::TileEntries> tile_entries;
 };
 
-/// Draws one patch into the worker's bins. The clock must run; it is left in some stage.
-void drawPatch(const PreparedMesh& mesh, std::uint32_t patch, PatchVisibility seen, const InstanceView& view,
-               bool cull_back, std::uint32_t surface, const Viewport& viewport, GeometryWorker& worker);
+/// Draws one patch of `mesh` into the worker's bins; its triangles' surface is the number of the instance. The clock
+/// must run; it is left in some stage.
+void drawPatch(const DrawnPatch& drawn, const PreparedMesh& mesh, const InstanceView& view, const Viewport& viewport,
+               GeometryWorker& worker);
 
 }  // namespace sheaf::pipeline

@@ -11,19 +11,13 @@ using grouping::PatchTree;
 
 class PartCuller {
  public:
-  PartCuller(std::uint32_t instance, const PatchTree& tree, const InstanceView& view, bool back_faces_culled,
-             std::vector<DrawnPatch>& drawn, Counters& counters)
-      : instance_(instance),
-        tree_(tree),
-        view_(view),
-        back_faces_culled_(back_faces_culled),
-        drawn_(drawn),
-        counters_(counters) {}
+  PartCuller(std::uint32_t instance, const PatchTree& tree, const InstanceView& view, CulledPatches& out)
+      : instance_(instance), tree_(tree), view_(view), out_(out) {}
 
   void drawAll(std::uint32_t part) {
     const std::uint32_t end = patchEnd(PatchTree::kLevels - 1, part);
     for (std::uint32_t p = part * PatchTree::kPatchesPerPart; p < end; ++p)
-      drawn_.push_back({instance_, p, PatchVisibility::kStraddling});
+      out_.drawn.push_back({instance_, p, PatchVisibility::kStraddling});
   }
 
   void testAll(std::uint32_t part) {
@@ -41,7 +35,7 @@ class PartCuller {
       const std::uint32_t below = block * kTreeFanOut + lane;
       const std::uint32_t bit = 1U << lane;
       if ((bits.outside & bit) != 0)
-        counters_.patches_outside += patchEnd(level - 1, below) - patchBegin(level - 1, below);
+        out_.outside += patchEnd(level - 1, below) - patchBegin(level - 1, below);
       else if (((bits.clips | bits.crosses) & bit) != 0)
         descend(level - 1, below);
       else
@@ -63,7 +57,7 @@ class PartCuller {
   }
 
   BoxBits testBoxes(std::size_t level, std::uint32_t block) {
-    counters_.boxes_tested += boxCount(level, block);
+    out_.boxes_tested += boxCount(level, block);
     return classifyBoxes(tree_.levels[level][block], view_);
   }
 
@@ -79,31 +73,29 @@ class PartCuller {
     const std::uint32_t valid = 0xFFFFU >> (kTreeFanOut - boxCount(0, block));
     const std::uint32_t outside = bits.outside & valid;
     std::uint32_t kept = valid & ~outside;
-    counters_.patches_outside += static_cast<unsigned>(std::popcount(outside));
-    if (back_faces_culled_ && kept != 0) {
+    out_.outside += static_cast<unsigned>(std::popcount(outside));
+    if (view_.culls_back && kept != 0) {
       const std::uint32_t back_facing = kept & findBackFacing(tree_.levels[0][block], tree_.cones[block], view_);
       kept &= ~back_facing;
-      counters_.patches_back_facing += static_cast<unsigned>(std::popcount(back_facing));
+      out_.back_facing += static_cast<unsigned>(std::popcount(back_facing));
     }
     for (; kept != 0; kept &= kept - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(kept));
-      drawn_.push_back({instance_, block * kTreeFanOut + lane, bits.visibilityOf(lane)});
+      out_.drawn.push_back({instance_, block * kTreeFanOut + lane, bits.visibilityOf(lane)});
     }
   }
 
   std::uint32_t instance_;
   const PatchTree& tree_;
   const InstanceView& view_;
-  bool back_faces_culled_;
-  std::vector<DrawnPatch>& drawn_;
-  Counters& counters_;
+  CulledPatches& out_;
 };
 
 }  // namespace
 
 void cullPart(const CullJob& job, const PatchTree& tree, Culling culling, const InstanceView& view,
-              bool back_faces_culled, std::vector<DrawnPatch>& drawn, Counters& counters) {
-  PartCuller culler(job.instance, tree, view, back_faces_culled, drawn, counters);
+              CulledPatches& out) {
+  PartCuller culler(job.instance, tree, view, out);
   switch (culling) {
     case Culling::kNone:
       return culler.drawAll(job.part);

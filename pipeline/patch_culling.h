@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "grouping/patch_tree.h"
-#include "pipeline/counters.h"
 #include "pipeline/cull.h"
 
 namespace sheaf::pipeline {
@@ -29,9 +28,16 @@ struct CullJob {
   std::uint32_t part;  ///< below PatchTree::partCount()
 };
 
-/// Adds what is drawn of a part to `drawn`, in ascending order of patches, and counts. kTree and kPatches say the same
-/// of every patch.
+/// What is left of some jobs, and what it took.
+struct CulledPatches {
+  std::vector<DrawnPatch> drawn;
+  std::uint64_t boxes_tested = 0;  ///< as Counters::boxes_tested, and so on
+  std::uint64_t outside = 0;
+  std::uint64_t back_facing = 0;
+};
+
+/// Adds a part to `out`, its patches in ascending order. kTree and kPatches say the same of every patch.
 void cullPart(const CullJob& job, const grouping::PatchTree& tree, Culling culling, const InstanceView& view,
-              bool back_faces_culled, std::vector<DrawnPatch>& drawn, Counters& counters);
+              CulledPatches& out);
 
 }  // namespace sheaf::pipeline

@@ -108,6 +108,10 @@ struct Renderer::State {
 
   void begin(const PreparedScene& scene, const RenderSettings& settings);
   void cull(const PreparedScene& scene, const View& view, const RenderSettings& settings, Counters& counters);
+  void viewInstances(const PreparedScene& scene, const View& view, Culling culling);
+  void listJobs(const PreparedScene& scene, Counters& counters);
+  void cullPatches(const PreparedScene& scene, Culling culling);
+  void gatherDrawn(const PreparedScene& scene, Counters& counters);
   void drawGeometry(const PreparedScene& scene, const View& view);
   void drawTiles(const PreparedScene& scene, const scenes::Camera& camera, const DMat4& view_from_world,
                  const RenderSettings& settings, Frame& frame);
@@ -124,7 +128,8 @@ void Renderer::State::begin(const PreparedScene& scene, const RenderSettings& se
     w.binner.reset(settings.width, settings.height, arena);
     w.clock.reset(static_cast<int>(i), settings.record_spans);
     w.counters = {};
-    w.drawn.clear();
+    w.culled.drawn.clear();
+    w.culled.boxes_tested = w.culled.outside = w.culled.back_facing = 0;
   }
   instances.resize(scene.instances.size());
   surfaces.resize(scene.instances.size());
@@ -132,6 +137,13 @@ void Renderer::State::begin(const PreparedScene& scene, const RenderSettings& se
 
 void Renderer::State::cull(const PreparedScene& scene, const View& view, const RenderSettings& settings,
                            Counters& counters) {
+  viewInstances(scene, view, settings.culling);
+  listJobs(scene, counters);
+  cullPatches(scene, settings.culling);
+  gatherDrawn(scene, counters);
+}
+
+void Renderer::State::viewInstances(const PreparedScene& scene, const View& view, Culling culling) {
   pool.parallelFor(pieces(instances.size(), kInstancesPerPiece), [&](int piece, int worker) {
     StageClock& clock = workers[static_cast<std::size_t>(worker)].clock;
     clock.begin(Stage::kCull);
@@ -140,39 +152,50 @@ void Renderer::State::cull(const PreparedScene& scene, const View& view, const R
     for (std::size_t i = first; i < last; ++i) {
       const scenes::Instance& instance = scene.instances[i];
       const PreparedMesh& mesh = scene.meshes[instance.mesh];
-      instances[i] = viewInstance(instance, mesh.bounds, view, settings.culling != Culling::kNone);
+      instances[i] = viewInstance(instance, mesh.bounds, view, culling != Culling::kNone);
+      instances[i].culls_back = !scene.double_sided[instance.material];
       surfaces[i] = surfaceOf(mesh, instance, static_cast<std::uint32_t>(i));
     }
     clock.end();
   });
+}
 
+void Renderer::State::listJobs(const PreparedScene& scene, Counters& counters) {
   jobs.clear();
   counters.instances = instances.size();
   for (std::uint32_t i = 0; i < instances.size(); ++i) {
     const PreparedMesh& mesh = scene.meshes[scene.instances[i].mesh];
-    const auto count = static_cast<std::uint32_t>(mesh.patches.size());
-    counters.patches += count;
+    counters.patches += mesh.patches.size();
     counters.triangles_in += mesh.triangle_count;
     if (!instances[i].visible) {
-      counters.patches_outside += count;
+      counters.patches_outside += mesh.patches.size();
       continue;
     }
     for (std::uint32_t part = 0; part < mesh.tree.partCount(); ++part) jobs.push_back({i, part});
   }
+}
 
+void Renderer::State::cullPatches(const PreparedScene& scene, Culling culling) {
   pool.parallelFor(static_cast<int>(jobs.size()), [&](int piece, int worker) {
     GeometryWorker& w = workers[static_cast<std::size_t>(worker)];
     w.clock.begin(Stage::kCull);
     const CullJob& job = jobs[static_cast<std::size_t>(piece)];
-    const scenes::Instance& instance = scene.instances[job.instance];
-    cullPart(job, scene.meshes[instance.mesh].tree, settings.culling, instances[job.instance],
-             !scene.double_sided[instance.material], w.drawn, w.counters);
+    const PreparedMesh& mesh = scene.meshes[scene.instances[job.instance].mesh];
+    cullPart(job, mesh.tree, culling, instances[job.instance], w.culled);
     w.clock.end();
   });
+}
 
+// From all workers, and makes room for their triangles.
+void Renderer::State::gatherDrawn(const PreparedScene& scene, Counters& counters) {
   drawn.clear();
+  for (const GeometryWorker& w : workers) {
+    drawn.insert(drawn.end(), w.culled.drawn.begin(), w.culled.drawn.end());
+    counters.boxes_tested += w.culled.boxes_tested;
+    counters.patches_outside += w.culled.outside;
+    counters.patches_back_facing += w.culled.back_facing;
+  }
   std::uint64_t triangles = 0;
-  for (const GeometryWorker& w : workers) drawn.insert(drawn.end(), w.drawn.begin(), w.drawn.end());
   for (const DrawnPatch& d : drawn)
     triangles += scene.meshes[scene.instances[d.instance].mesh].patches[d.patch].triangle_count;
   if (!arena.reset(triangles, static_cast<int>(workers.size())))
@@ -181,19 +204,18 @@ void Renderer::State::cull(const PreparedScene& scene, const View& view, const R
 }
 
 void Renderer::State::drawGeometry(const PreparedScene& scene, const View& view) {
+  const auto meshOf = [&](const DrawnPatch& d) -> const PreparedMesh& {
+    return scene.meshes[scene.instances[d.instance].mesh];
+  };
   pool.parallelFor(pieces(drawn.size(), kPatchesPerGeometryPiece), [&](int piece, int worker) {
     GeometryWorker& w = workers[static_cast<std::size_t>(worker)];
     w.clock.begin(Stage::kTransform);
     const std::size_t first = static_cast<std::size_t>(piece) * kPatchesPerGeometryPiece;
     const std::size_t last = std::min(drawn.size(), first + kPatchesPerGeometryPiece);
     for (std::size_t i = first; i < last; ++i) {
-      const DrawnPatch& d = drawn[i];
-      const scenes::Instance& instance = scene.instances[d.instance];
-      const PreparedMesh& mesh = scene.meshes[instance.mesh];
       const DrawnPatch& next = drawn[std::min(i + 1, drawn.size() - 1)];
-      w.next = {&scene.meshes[scene.instances[next.instance].mesh].vertices, next.patch};
-      drawPatch(mesh, d.patch, d.seen, instances[d.instance], !scene.double_sided[instance.material], d.instance,
-                view.viewport, w);
+      w.next = {&meshOf(next).vertices, next.patch};
+      drawPatch(drawn[i], meshOf(drawn[i]), instances[drawn[i].instance], view.viewport, w);
     }
     w.clock.end();
   });

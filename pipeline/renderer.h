@@ -48,9 +48,10 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// camera  near and far must be set (scenes::fitClipPlanes). Throws Error(kUnsupported) when more triangles are in
-  /// view
-  ///         than the raster can number (about 130 million).
+  /// camera    near and far must be set (scenes::fitClipPlanes)
+  /// settings  size within the range stated there, which is asserted
+  /// frame     overwritten; its memory is used again where sizes allow
+  /// Throws Error(kUnsupported) when more triangles are in view than raster::ShadeTriangleArena::kMaxTriangles.
   void render(const PreparedScene& scene, const scenes::Camera& camera, const RenderSettings& settings, Frame& frame);
 
  private:

@@ -60,14 +60,25 @@ struct OutcodeSummary {
 /// Where a run of a patch begins.
 struct RunStart {
   std::uint32_t vertex = 0;     ///< local number of its first vertex
-  std::uint32_t full = 0;       ///< into VertexRuns::full
-  std::uint32_t parameter = 0;  ///< s, into VertexRuns::quantised or parameters
+  std::uint32_t full = 0;       ///< into VertexRuns::full, where it is stored in full; else
+  std::uint32_t parameter = 0;  ///< into VertexRuns::quantised or parameters
 
   explicit RunStart(const grouping::PatchRuns& patch) : full(patch.first_full), parameter(patch.first_parameter) {}
   void skip(const grouping::VertexRun& run) {
     vertex += run.vertex_count;
     (run.kind == grouping::RunKind::kFull ? full : parameter) += run.vertex_count;
   }
+};
+
+/// Vertices [begin, end) of a run, counted from its first.
+struct RunPiece {
+  const grouping::VertexRun& run;
+  RunStart start;
+  std::uint32_t begin, end;
+
+  /// Local numbers.
+  std::uint32_t firstVertex() const { return start.vertex + begin; }
+  std::uint32_t endVertex() const { return start.vertex + end; }
 };
 
 /// Clip space from the space of a patch's planes: its frame, or else object space.
@@ -78,10 +89,9 @@ Mat4 clipFromPlanes(const grouping::VertexRuns& runs, const grouping::PatchRuns&
 void transformPatch(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const Mat4& clip_from_object,
                     const Viewport& viewport, ProjectedVertices& out);
 
-/// Vertices [begin, end) of one run, counted from its first, to clip space; nothing else of `out` is written.
-void transformRun(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const grouping::VertexRun& run,
-                  const RunStart& start, std::uint32_t begin, std::uint32_t end, const Mat4& clip_from_object,
-                  ClipVertices& out);
+/// Vertices of one run to clip space; nothing else of `out` is written.
+void transformRun(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const RunPiece& piece,
+                  const Mat4& clip_from_object, ClipVertices& out);
 
 /// Vertices [begin, end) of the patch; writes beyond, to the end of a vector, what it finds there.
 void projectVertices(const ClipVertices& vertices, std::uint32_t begin, std::uint32_t end, const Viewport& viewport,

@@ -132,23 +132,29 @@ struct ToScreen {
   }
 };
 
+// Local numbers of the vertices that are written.
+struct Slots {
+  std::uint32_t first, end;
+  explicit Slots(const RunPiece& piece) : first(piece.firstVertex()), end(piece.endVertex()) {}
+};
+
 // ((m3 + m0 x) + m1 y) + m2 z.
 template <class Target>
-HWY_INLINE void TransformFull(const float* x, std::size_t stride, std::uint32_t to, std::uint32_t end, const Mat4& m,
-                              const Target& target) {
+HWY_INLINE void TransformFull(const float* x, std::size_t stride, const Mat4& m, Slots to, const Target& target) {
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(df));
   const Rows m0 = Spread(m[0]), m1 = Spread(m[1]), m2 = Spread(m[2]), m3 = Spread(m[3]);
-  for (std::uint32_t v = 0; to + v < end; v += lanes) {
+  for (std::uint32_t v = 0; to.first + v < to.end; v += lanes) {
     const VF vx = target.arrange(hn::LoadU(df, x + v));
     const VF vy = target.arrange(hn::LoadU(df, x + stride + v));
     const VF vz = target.arrange(hn::LoadU(df, x + 2 * stride + v));
-    target.store(Sum(Sum(Sum(m3, Scaled(m0, vx)), Scaled(m1, vy)), Scaled(m2, vz)), to + v, end);
+    target.store(Sum(Sum(Sum(m3, Scaled(m0, vx)), Scaled(m1, vy)), Scaled(m2, vz)), to.first + v, to.end);
   }
 }
 
-// Parameters as floats: stored so, or whole numbers of grid steps.
+// Parameters as floats: stored so, or whole numbers of grid steps. `step` takes them to lengths.
 struct FloatParameters {
   const Vec2* st;
+  float step = 1.0F;
   template <class Target>
   void load(std::uint32_t v, const Target& target, VF& s, VF& t) const {
     hn::LoadInterleaved2(df, &st[v].x, s, t);
@@ -158,6 +164,7 @@ struct FloatParameters {
 };
 struct GridParameters {
   const std::uint32_t* st;
+  float step;
   std::int32_t corner_s;
   std::int32_t corner_t;
   template <class Target>
@@ -173,89 +180,94 @@ struct GridParameters {
 // [PG] eq. 2: base + s S + t T. The constant is added where coordinate kAxis has its place, so that sums round as those
 // of TransformFull(): it is part of the base for x and costs one more addition for y and z.
 template <std::size_t kAxis, class Parameters, class Target>
-HWY_INLINE void TransformPlane(const Parameters& parameters, float plane, float step, const Mat4& m, std::uint32_t to,
-                               std::uint32_t end, const Target& target) {
+HWY_INLINE void TransformPlane(const Parameters& parameters, float plane, const Mat4& m, Slots to,
+                               const Target& target) {
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(df));
   constexpr int kS = kAxis == 0 ? 1 : 0, kT = kAxis == 2 ? 1 : 2;
   const Rows constant = Scaled(Spread(m[static_cast<int>(kAxis)]), hn::Set(df, plane));
   const Rows base = kAxis == 0 ? Sum(Spread(m[3]), constant) : Spread(m[3]);
   // Scaling by a power of two is exact: these give the products of the whole coordinates.
-  const Rows s_column = Scaled(Spread(m[kS]), hn::Set(df, step)), t_column = Scaled(Spread(m[kT]), hn::Set(df, step));
-  for (std::uint32_t v = 0; to + v < end; v += lanes) {
+  const VF step = hn::Set(df, parameters.step);
+  const Rows s_column = Scaled(Spread(m[kS]), step), t_column = Scaled(Spread(m[kT]), step);
+  for (std::uint32_t v = 0; to.first + v < to.end; v += lanes) {
     VF s, t;
     parameters.load(v, target, s, t);
     Rows sum = Sum(base, Scaled(s_column, s));
     if constexpr (kAxis == 1) sum = Sum(sum, constant);
     sum = Sum(sum, Scaled(t_column, t));
     if constexpr (kAxis == 2) sum = Sum(sum, constant);
-    target.store(sum, to + v, end);
+    target.store(sum, to.first + v, to.end);
   }
 }
 
 template <class Parameters, class Target>
-HWY_INLINE void TransformPlaneOn(std::size_t axis, const Parameters& parameters, float plane, float step, const Mat4& m,
-                                 std::uint32_t to, std::uint32_t end, const Target& target) {
-  if (axis == 0)
-    TransformPlane<0>(parameters, plane, step, m, to, end, target);
-  else if (axis == 1)
-    TransformPlane<1>(parameters, plane, step, m, to, end, target);
+HWY_INLINE void TransformPlaneOf(const grouping::VertexRun& run, const Parameters& parameters, const Mat4& m, Slots to,
+                                 const Target& target) {
+  if (run.axis == 0)
+    TransformPlane<0>(parameters, run.plane, m, to, target);
+  else if (run.axis == 1)
+    TransformPlane<1>(parameters, run.plane, m, to, target);
   else
-    TransformPlane<2>(parameters, plane, step, m, to, end, target);
-}
-
-// [PG] eq. 1: base + s L, with s = s0 + q ds for the stored q.
-template <class Parameters, class Target>
-HWY_INLINE void TransformLine(const Parameters& parameters, float s0, float ds, const Vec4& base, const Vec4& along,
-                              std::uint32_t to, std::uint32_t end, const Target& target) {
-  const auto lanes = static_cast<std::uint32_t>(hn::Lanes(df));
-  const Rows origin = Spread(base), direction = Spread(along);
-  for (std::uint32_t v = 0; to + v < end; v += lanes) {
-    VF q, unused;
-    parameters.load(v, target, q, unused);
-    const VF s = hn::Add(hn::Set(df, s0), hn::Mul(q, hn::Set(df, ds)));
-    target.store(Sum(origin, Scaled(direction, s)), to + v, end);
-  }
+    TransformPlane<2>(parameters, run.plane, m, to, target);
 }
 
 template <class Target>
 HWY_INLINE void TransformPlaneRun(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch,
-                                  const grouping::VertexRun& run, std::uint32_t first, std::uint32_t to,
-                                  std::uint32_t end, const Mat4& m, const Target& target) {
+                                  const RunPiece& piece, const Mat4& clip_from_object, const Target& target) {
+  const Mat4 m = clipFromPlanes(runs, patch, clip_from_object);
+  const std::uint32_t first = piece.start.parameter + piece.begin;
   if (runs.form == grouping::ParameterForm::kFloat) {
-    const FloatParameters parameters{runs.parameters.data() + first};
-    TransformPlaneOn(run.axis, parameters, run.plane, 1.0F, m, to, end, target);
+    TransformPlaneOf(piece.run, FloatParameters{runs.parameters.data() + first}, m, Slots(piece), target);
   } else {
-    const auto [i, j] = grouping::axesBeside(run.axis);
-    const GridParameters parameters{runs.quantised.data() + first, patch.corner[i], patch.corner[j]};
-    TransformPlaneOn(run.axis, parameters, run.plane, runs.step, m, to, end, target);
+    const auto [i, j] = grouping::axesBeside(piece.run.axis);
+    const GridParameters parameters{runs.quantised.data() + first, runs.step, patch.corner[i], patch.corner[j]};
+    TransformPlaneOf(piece.run, parameters, m, Slots(piece), target);
+  }
+}
+
+// A line in clip space: base + s along, with s = s0 + q ds for the stored q.
+struct ClipLine {
+  Vec4 base, along;
+  float s0, ds;
+};
+
+// [PG] eq. 1.
+template <class Parameters, class Target>
+HWY_INLINE void TransformLine(const Parameters& parameters, const ClipLine& line, Slots to, const Target& target) {
+  const auto lanes = static_cast<std::uint32_t>(hn::Lanes(df));
+  const Rows origin = Spread(line.base), direction = Spread(line.along);
+  const VF s0 = hn::Set(df, line.s0), ds = hn::Set(df, line.ds);
+  for (std::uint32_t v = 0; to.first + v < to.end; v += lanes) {
+    VF q, unused;
+    parameters.load(v, target, q, unused);
+    const VF s = hn::Add(s0, hn::Mul(q, ds));
+    target.store(Sum(origin, Scaled(direction, s)), to.first + v, to.end);
   }
 }
 
 template <class Target>
-HWY_INLINE void TransformLineRun(const grouping::VertexRuns& runs, const grouping::VertexRun& run, std::uint32_t first,
-                                 std::uint32_t to, std::uint32_t end, const Mat4& m, const Target& target) {
-  const grouping::RunLine& line = runs.lines[run.line];
+HWY_INLINE void TransformLineRun(const grouping::VertexRuns& runs, const RunPiece& piece, const Mat4& m,
+                                 const Target& target) {
+  const grouping::RunLine& line = runs.lines[piece.run.line];
   const Vec4 base = ((m[3] + m[0] * line.base.x) + m[1] * line.base.y) + m[2] * line.base.z;
   const Vec4 along = (m[0] * line.direction.x + m[1] * line.direction.y) + m[2] * line.direction.z;
+  const std::uint32_t first = piece.start.parameter + piece.begin;
   if (runs.form == grouping::ParameterForm::kFloat)
-    TransformLine(FloatParameters{runs.parameters.data() + first}, 0.0F, 1.0F, base, along, to, end, target);
+    TransformLine(FloatParameters{runs.parameters.data() + first}, {base, along, 0.0F, 1.0F}, Slots(piece), target);
   else
-    TransformLine(GridParameters{runs.quantised.data() + first, 0, 0}, line.s0, line.ds, base, along, to, end, target);
+    TransformLine(GridParameters{runs.quantised.data() + first, 1.0F, 0, 0}, {base, along, line.s0, line.ds},
+                  Slots(piece), target);
 }
 
-// Vertices [begin, end) of a run.
 template <class Target>
-HWY_INLINE void TransformAnyRun(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch,
-                                const grouping::VertexRun& run, const RunStart& start, std::uint32_t begin,
-                                std::uint32_t end, const Mat4& m, const Target& target) {
-  const std::uint32_t to = start.vertex + begin;
-  const std::uint32_t to_end = start.vertex + end;
-  if (run.kind == grouping::RunKind::kFull)
-    TransformFull(runs.full.data() + start.full + begin, runs.full_stride, to, to_end, m, target);
-  else if (run.kind == grouping::RunKind::kPlane)
-    TransformPlaneRun(runs, patch, run, start.parameter + begin, to, to_end, clipFromPlanes(runs, patch, m), target);
+HWY_INLINE void TransformPiece(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch,
+                               const RunPiece& piece, const Mat4& m, const Target& target) {
+  if (piece.run.kind == grouping::RunKind::kFull)
+    TransformFull(runs.full.data() + piece.start.full + piece.begin, runs.full_stride, m, Slots(piece), target);
+  else if (piece.run.kind == grouping::RunKind::kPlane)
+    TransformPlaneRun(runs, patch, piece, m, target);
   else
-    TransformLineRun(runs, run, start.parameter + begin, to, to_end, m, target);
+    TransformLineRun(runs, piece, m, target);
 }
 
 void TransformPatch(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const Mat4& m,
@@ -264,14 +276,14 @@ void TransformPatch(const grouping::VertexRuns& runs, const grouping::PatchRuns&
   RunStart start(patch);
   for (std::uint32_t r = 0; r < patch.run_count; ++r) {
     const grouping::VertexRun& run = runs.runs[patch.first_run + r];
-    TransformAnyRun(runs, patch, run, start, 0, run.vertex_count, m, target);
+    TransformPiece(runs, patch, {run, start, 0, run.vertex_count}, m, target);
     start.skip(run);
   }
 }
 
-void TransformRun(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const grouping::VertexRun& run,
-                  const RunStart& start, std::uint32_t begin, std::uint32_t end, const Mat4& m, ClipVertices& out) {
-  TransformAnyRun(runs, patch, run, start, begin, end, m, ToClipSpace{out});
+void TransformRun(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const RunPiece& piece,
+                  const Mat4& m, ClipVertices& out) {
+  TransformPiece(runs, patch, piece, m, ToClipSpace{out});
 }
 
 void ProjectVertices(const ClipVertices& vertices, std::uint32_t begin, std::uint32_t end, const Viewport& viewport,
@@ -339,10 +351,9 @@ void transformPatch(const grouping::VertexRuns& runs, const grouping::PatchRuns&
                     const Viewport& viewport, ProjectedVertices& out) {
   HWY_DYNAMIC_DISPATCH(TransformPatch)(runs, patch, clip_from_object, viewport, out);
 }
-void transformRun(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const grouping::VertexRun& run,
-                  const RunStart& start, std::uint32_t begin, std::uint32_t end, const Mat4& clip_from_object,
-                  ClipVertices& out) {
-  HWY_DYNAMIC_DISPATCH(TransformRun)(runs, patch, run, start, begin, end, clip_from_object, out);
+void transformRun(const grouping::VertexRuns& runs, const grouping::PatchRuns& patch, const RunPiece& piece,
+                  const Mat4& clip_from_object, ClipVertices& out) {
+  HWY_DYNAMIC_DISPATCH(TransformRun)(runs, patch, piece, clip_from_object, out);
 }
 void projectVertices(const ClipVertices& vertices, std::uint32_t begin, std::uint32_t end, const Viewport& viewport,
                      ProjectedVertices& out) {

@@ -5,8 +5,7 @@
 //   Method bin to 64x64 tiles -> 8x8 block masks from exact edge functions [Pin88], top-left rule -> depth test against
 //          a per-block farthest depth [GKM93] -> shade what is visible [BH13]
 //   Keeps  same bytes for any SIMD target, thread count and order of triangles: coverage is exact integers, equal
-//   depths
-//          go to the lower (instance, triangle), no float sum depends on order
+//          depths go to the lower (instance, triangle), no float sum depends on order
 //   Knows  no meshes and no scenes
 #pragma once
 

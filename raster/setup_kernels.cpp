@@ -24,6 +24,7 @@ using VF = hn::Vec<decltype(df)>;
 // Within this extent, in subpixels, every product of two differences fits 30 bits, so that 32-bit edge functions are
 // exact.
 constexpr std::int32_t kMaxExtent = 32000;
+static_assert(std::int64_t{kMaxExtent} * kMaxExtent < 1 << 30);
 
 unsigned MaskBits(hn::Mask<decltype(di)> mask) {
   std::uint8_t bits[8] = {};

@@ -15,7 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::raster::HWY_NAMESPACE {
 
-// ShadeTriangle as sixteen 32-bit words; FetchVector() relies on their order.
+// ShadeTriangle as sixteen 32-bit words; Records relies on their order.
 inline constexpr int kWords = 16;
 static_assert(sizeof(ShadeTriangle) == kWords * sizeof(std::uint32_t));
 static_assert(offsetof(ShadeTriangle, ux) == 3 * 4 && offsetof(ShadeTriangle, uy) == 6 * 4);
@@ -40,19 +40,26 @@ struct BlockFragments {
   std::uint32_t uniform[kBlockPixels];
 };
 
+/// The words of a ShadeTriangle in every lane, in their order.
+struct Records {
+  VU u00, u01, u02, ux0, ux1, ux2, uy0, uy1, uy2;  ///< bits of floats
+  VU ref;                                          ///< x in the lower half, y in the upper one
+  VU vertex0, vertex1, vertex2;
+  VU surface, triangle, back_face;
+};
+
 HWY_INLINE std::uint64_t AllLanes() {
   return (std::uint64_t{1} << hn::Lanes(DF())) - 1;
 }
 
 #if HWY_TARGET == HWY_SCALAR || HWY_HAVE_SCALABLE
 
-/// The sixteen words of each lane's record, in order.
-HWY_INLINE void LoadRecords(const std::uint32_t* words, const std::uint32_t* ids, VU& w0, VU& w1, VU& w2, VU& w3,
-                            VU& w4, VU& w5, VU& w6, VU& w7, VU& w8, VU& w9, VU& w10, VU& w11, VU& w12, VU& w13, VU& w14,
-                            VU& w15) {
+/// The record of each lane's triangle.
+HWY_INLINE Records LoadRecords(const std::uint32_t* words, const std::uint32_t* ids) {
   const VI first = hn::BitCast(DI(), hn::ShiftLeft<4>(hn::Load(DU(), ids)));
-  VU* const out[kWords] = {&w0, &w1, &w2, &w3, &w4, &w5, &w6, &w7, &w8, &w9, &w10, &w11, &w12, &w13, &w14, &w15};
-  for (int word = 0; word < kWords; ++word) *out[word] = Gather(words + word, first);
+  const auto word = [&](int i) HWY_ATTR { return Gather(words + i, first); };
+  return {word(0), word(1), word(2),  word(3),  word(4),  word(5),  word(6),  word(7),
+          word(8), word(9), word(10), word(11), word(12), word(13), word(14), word(15)};
 }
 
 HWY_INLINE void LoadNormals(const VertexNormal* normals, const std::int32_t* vertices, VF& x, VF& y, VF& z) {
@@ -100,20 +107,20 @@ HWY_INLINE void LoadQuarters(const std::uint32_t* words, const std::uint32_t* id
   }
 }
 
-/// The sixteen words of each lane's record, in order: loads of whole records and a transposition, which are faster than
-/// gathers that read one word at a time.
-HWY_INLINE void LoadRecords(const std::uint32_t* words, const std::uint32_t* ids, VU& w0, VU& w1, VU& w2, VU& w3,
-                            VU& w4, VU& w5, VU& w6, VU& w7, VU& w8, VU& w9, VU& w10, VU& w11, VU& w12, VU& w13, VU& w14,
-                            VU& w15) {
+/// The record of each lane's triangle: loads of whole records and a transposition, which are faster than gathers that
+/// read one word at a time.
+HWY_INLINE Records LoadRecords(const std::uint32_t* words, const std::uint32_t* ids) {
+  Records r;
   VU a0, a1, a2, a3, b0, b1, b2, b3, c0, c1, c2, c3, d0, d1, d2, d3;
   LoadQuarters(words, ids, a0, b0, c0, d0);
   LoadQuarters(words, ids + 1, a1, b1, c1, d1);
   LoadQuarters(words, ids + 2, a2, b2, c2, d2);
   LoadQuarters(words, ids + 3, a3, b3, c3, d3);
-  TransposeBlocks(a0, a1, a2, a3, w0, w1, w2, w3);
-  TransposeBlocks(b0, b1, b2, b3, w4, w5, w6, w7);
-  TransposeBlocks(c0, c1, c2, c3, w8, w9, w10, w11);
-  TransposeBlocks(d0, d1, d2, d3, w12, w13, w14, w15);
+  TransposeBlocks(a0, a1, a2, a3, r.u00, r.u01, r.u02, r.ux0);
+  TransposeBlocks(b0, b1, b2, b3, r.ux1, r.ux2, r.uy0, r.uy1);
+  TransposeBlocks(c0, c1, c2, c3, r.uy2, r.ref, r.vertex0, r.vertex1);
+  TransposeBlocks(d0, d1, d2, d3, r.vertex2, r.surface, r.triangle, r.back_face);
+  return r;
 }
 
 /// The normals of vertices[0], vertices[4] and so on, one in each 128-bit block.
@@ -142,10 +149,10 @@ HWY_INLINE void LoadNormals(const VertexNormal* normals, const std::int32_t* ver
 #endif
 
 /// One record for all lanes.
-HWY_INLINE void BroadcastRecord(const std::uint32_t* record, VU& w0, VU& w1, VU& w2, VU& w3, VU& w4, VU& w5, VU& w6,
-                                VU& w7, VU& w8, VU& w9, VU& w10, VU& w11, VU& w12, VU& w13, VU& w14, VU& w15) {
-  VU* const out[kWords] = {&w0, &w1, &w2, &w3, &w4, &w5, &w6, &w7, &w8, &w9, &w10, &w11, &w12, &w13, &w14, &w15};
-  for (int word = 0; word < kWords; ++word) *out[word] = hn::Set(DU(), record[word]);
+HWY_INLINE Records BroadcastRecord(const std::uint32_t* record) {
+  const auto word = [&](int i) HWY_ATTR { return hn::Set(DU(), record[i]); };
+  return {word(0), word(1), word(2),  word(3),  word(4),  word(5),  word(6),  word(7),
+          word(8), word(9), word(10), word(11), word(12), word(13), word(14), word(15)};
 }
 
 /// Evaluates the triangles at one vector of pixels; returns the lanes that are of the surface.
@@ -155,17 +162,10 @@ HWY_INLINE MF FetchVector(const ShadeTriangle* triangles, const std::uint32_t* i
   const DF d;
   const DI di;
   const DU du;
-  VU u00, u01, u02, ux0, ux1, ux2, uy0, uy1, uy2, ref, vertex0, vertex1, vertex2, surface, triangle, back_face;
   const auto* words = reinterpret_cast<const std::uint32_t*>(triangles);
-  if constexpr (kUniform)
-    BroadcastRecord(words + std::size_t{kWords} * ids[0], u00, u01, u02, ux0, ux1, ux2, uy0, uy1, uy2, ref, vertex0,
-                    vertex1, vertex2, surface, triangle, back_face);
-  else
-    LoadRecords(words, ids, u00, u01, u02, ux0, ux1, ux2, uy0, uy1, uy2, ref, vertex0, vertex1, vertex2, surface,
-                triangle, back_face);
-  static_cast<void>(triangle);
+  const Records r = kUniform ? BroadcastRecord(words + std::size_t{kWords} * ids[0]) : LoadRecords(words, ids);
 
-  const VI ref_xy = hn::BitCast(di, ref);
+  const VI ref_xy = hn::BitCast(di, r.ref);
   const VF dx = hn::ConvertTo(d, hn::Sub(x, hn::ShiftRight<16>(hn::ShiftLeft<16>(ref_xy))));
   const VF dy = hn::ConvertTo(d, hn::Sub(y, hn::ShiftRight<16>(ref_xy)));
   const auto plane = [&](VU at_ref, VU along_x, VU along_y) HWY_ATTR {
@@ -173,26 +173,26 @@ HWY_INLINE MF FetchVector(const ShadeTriangle* triangles, const std::uint32_t* i
     const VF moved_y = hn::Mul(hn::BitCast(DF(), along_y), dy);
     return hn::Add(hn::Add(hn::BitCast(DF(), at_ref), moved_x), moved_y);
   };
-  const VF u0 = plane(u00, ux0, uy0);
-  const VF u1 = plane(u01, ux1, uy1);
-  const VF u2 = plane(u02, ux2, uy2);
+  const VF u0 = plane(r.u00, r.ux0, r.uy0);
+  const VF u1 = plane(r.u01, r.ux1, r.uy1);
+  const VF u2 = plane(r.u02, r.ux2, r.uy2);
   const VF inverse_sum = hn::Div(Constant(1.0F), hn::Add(hn::Add(u0, u1), u2));
   hn::Store(hn::Mul(u0, inverse_sum), d, out.barycentric[0] + begin);
   hn::Store(hn::Mul(u1, inverse_sum), d, out.barycentric[1] + begin);
   hn::Store(hn::Mul(u2, inverse_sum), d, out.barycentric[2] + begin);
-  hn::Store(hn::BitCast(di, vertex0), di, out.vertex[0] + begin);
-  hn::Store(hn::BitCast(di, vertex1), di, out.vertex[1] + begin);
-  hn::Store(hn::BitCast(di, vertex2), di, out.vertex[2] + begin);
-  hn::Store(hn::ShiftLeft<31>(back_face), du, out.flip + begin);
+  hn::Store(hn::BitCast(di, r.vertex0), di, out.vertex[0] + begin);
+  hn::Store(hn::BitCast(di, r.vertex1), di, out.vertex[1] + begin);
+  hn::Store(hn::BitCast(di, r.vertex2), di, out.vertex[2] + begin);
+  hn::Store(hn::ShiftLeft<31>(r.back_face), du, out.flip + begin);
   if constexpr (kPatterned) {
-    hn::Store(hn::Mul(hn::BitCast(d, ux0), inverse_sum), d, out.along_x[0] + begin);
-    hn::Store(hn::Mul(hn::BitCast(d, ux1), inverse_sum), d, out.along_x[1] + begin);
-    hn::Store(hn::Mul(hn::BitCast(d, ux2), inverse_sum), d, out.along_x[2] + begin);
-    hn::Store(hn::Mul(hn::BitCast(d, uy0), inverse_sum), d, out.along_y[0] + begin);
-    hn::Store(hn::Mul(hn::BitCast(d, uy1), inverse_sum), d, out.along_y[1] + begin);
-    hn::Store(hn::Mul(hn::BitCast(d, uy2), inverse_sum), d, out.along_y[2] + begin);
+    hn::Store(hn::Mul(hn::BitCast(d, r.ux0), inverse_sum), d, out.along_x[0] + begin);
+    hn::Store(hn::Mul(hn::BitCast(d, r.ux1), inverse_sum), d, out.along_x[1] + begin);
+    hn::Store(hn::Mul(hn::BitCast(d, r.ux2), inverse_sum), d, out.along_x[2] + begin);
+    hn::Store(hn::Mul(hn::BitCast(d, r.uy0), inverse_sum), d, out.along_y[0] + begin);
+    hn::Store(hn::Mul(hn::BitCast(d, r.uy1), inverse_sum), d, out.along_y[1] + begin);
+    hn::Store(hn::Mul(hn::BitCast(d, r.uy2), inverse_sum), d, out.along_y[2] + begin);
   }
-  return hn::RebindMask(d, hn::Eq(surface, hn::Set(du, surface_id)));
+  return hn::RebindMask(d, hn::Eq(r.surface, hn::Set(du, surface_id)));
 }
 
 /// Lets the lanes outside `mine`, which belong to another surface's arrays, read the vertices of a lane within.

@@ -40,29 +40,33 @@ Vec3 groundColor(double level, double steepness, double grain) {
   return color * static_cast<float>(0.85 + 0.3 * grain);
 }
 
-}  // namespace
+// Levels of the ground over a grid, 0 at the water and 1 at the highest peak, with one more sample on every side, so
+// that normals at the rim see both of their neighbours.
+class Ground {
+ public:
+  Ground(int n, double height_range, std::uint32_t seed)
+      : padded_(static_cast<std::size_t>(n) + 2), height_range_(height_range), levels_(padded_ * padded_) {
+    for (std::size_t j = 0; j < padded_; ++j)
+      for (std::size_t i = 0; i < padded_; ++i) {
+        const double x = kFeatures * (static_cast<double>(i) - 1.0) / (n - 1);
+        const double z = kFeatures * (static_cast<double>(j) - 1.0) / (n - 1);
+        levels_[j * padded_ + i] = (groundLevel(x, z, seed) - kWaterLevel) / (1.0 - kWaterLevel);
+      }
+  }
 
-Scene buildTerrain(const BuiltinArguments& arguments) {
-  const int n = arguments.whole("n");
-  const auto seed = static_cast<std::uint32_t>(arguments.whole("seed"));
-  const double height_range = kHighest * arguments.number("relief");
+  // Of the padded grid: [1, n] is the terrain.
+  double level(std::size_t i, std::size_t j) const { return levels_[j * padded_ + i]; }
+  double height(std::size_t i, std::size_t j) const { return height_range_ * std::max(0.0, level(i, j)); }
+
+ private:
+  std::size_t padded_;
+  double height_range_;
+  std::vector<double> levels_;
+};
+
+void addVertices(const Ground& ground, int n, std::uint32_t seed, mesh::Mesh& m) {
   const auto side = static_cast<std::size_t>(n);
   const double step = kSide / (n - 1);
-
-  // One more sample on every side, so that normals at the rim see both of their neighbours.
-  const std::size_t padded = side + 2;
-  std::vector<double> levels(padded * padded);
-  for (std::size_t j = 0; j < padded; ++j)
-    for (std::size_t i = 0; i < padded; ++i) {
-      const double x = kFeatures * (static_cast<double>(i) - 1.0) / (n - 1);
-      const double z = kFeatures * (static_cast<double>(j) - 1.0) / (n - 1);
-      levels[j * padded + i] = (groundLevel(x, z, seed) - kWaterLevel) / (1.0 - kWaterLevel);
-    }
-  const auto heightAt = [&](std::size_t i, std::size_t j) {
-    return height_range * std::max(0.0, levels[j * padded + i]);
-  };
-
-  mesh::Mesh m;
   for (auto* attribute : {&m.positions, &m.normals}) attribute->reserve(side * side);
   m.texcoords.reserve(side * side);
   m.colors.reserve(side * side);
@@ -70,17 +74,21 @@ Scene buildTerrain(const BuiltinArguments& arguments) {
     for (std::size_t i = 1; i <= side; ++i) {
       const double u = static_cast<double>(i - 1) / (n - 1);
       const double v = static_cast<double>(j - 1) / (n - 1);
-      const DVec3 normal = glm::normalize(
-          DVec3(heightAt(i - 1, j) - heightAt(i + 1, j), 2.0 * step, heightAt(i, j - 1) - heightAt(i, j + 1)));
-      const double level = levels[j * padded + i];
+      const DVec3 normal = glm::normalize(DVec3(ground.height(i - 1, j) - ground.height(i + 1, j), 2.0 * step,
+                                                ground.height(i, j - 1) - ground.height(i, j + 1)));
+      const double level = ground.level(i, j);
       const double grain = fractalNoise(40.0 * u, 40.0 * v, 0.0, 4, 0.6, seed + 211);
       const Vec3 color = level > 0.0 ? groundColor(level, 1.0 - normal.y, grain)
                                      : mix(Vec3(0.10F, 0.30F, 0.34F), Vec3(0.02F, 0.07F, 0.16F), level / -0.18);
-      m.positions.emplace_back(kSide * (u - 0.5), heightAt(i, j), kSide * (v - 0.5));
+      m.positions.emplace_back(kSide * (u - 0.5), ground.height(i, j), kSide * (v - 0.5));
       m.normals.emplace_back(normal);
       m.texcoords.emplace_back(u, v);
       m.colors.emplace_back(color, 1.0F);
     }
+}
+
+void addTriangles(int n, mesh::Mesh& m) {
+  const auto side = static_cast<std::size_t>(n);
   m.triangles.reserve(2 * (side - 1) * (side - 1));
   for (std::size_t j = 0; j + 1 < side; ++j)
     for (std::size_t i = 0; i + 1 < side; ++i) {
@@ -89,28 +97,47 @@ Scene buildTerrain(const BuiltinArguments& arguments) {
       m.triangles.push_back({a, b, b + 1});
       m.triangles.push_back({a, b + 1, a + 1});
     }
+}
 
-  Scene scene;
-  scene.meshes.push_back(std::move(m));
+Material groundMaterial() {
   Material material;
   material.name = "ground";
   material.base_color = Vec4(1.0F);
   material.specular = 0.02F;
   material.shininess = 12.0F;
-  scene.materials.push_back(material);
-  scene.instances.emplace_back();
+  return material;
+}
 
-  // A low sun shows the relief.
+// A low sun shows the relief.
+void addLight(Scene& scene) {
   scene.lights.push_back({Vec3(glm::normalize(DVec3(-0.8, 0.62, 0.25))), Vec3(0.92F, 0.83F, 0.70F)});
   scene.ambient.sky = Vec3(0.22F, 0.27F, 0.34F);
   scene.ambient.ground = Vec3(0.08F, 0.08F, 0.07F);
   scene.background = Vec3(0.50F, 0.62F, 0.76F);
+}
+
+Camera cameraFromTheSouth() {
   Camera camera;
   camera.name = "from the south";
   camera.eye = DVec3(1.2, 5.6, 10.4);
   camera.target = DVec3(0.0, 0.0, 0.35);
   camera.vertical_fov_rad = radians(40.0);
-  scene.cameras.push_back(camera);
+  return camera;
+}
+
+}  // namespace
+
+Scene buildTerrain(const BuiltinArguments& arguments) {
+  const int n = arguments.whole("n");
+  const auto seed = static_cast<std::uint32_t>(arguments.whole("seed"));
+  const Ground ground(n, kHighest * arguments.number("relief"), seed);
+  Scene scene;
+  addVertices(ground, n, seed, scene.meshes.emplace_back());
+  addTriangles(n, scene.meshes.back());
+  scene.materials.push_back(groundMaterial());
+  scene.instances.emplace_back();
+  addLight(scene);
+  scene.cameras.push_back(cameraFromTheSouth());
   return scene;
 }
 

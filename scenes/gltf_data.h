@@ -13,9 +13,11 @@ namespace sheaf::scenes {
 std::size_t accessorCount(const GltfDocument& document, int accessor);
 
 /// Elements of `components` numbers each, interleaved: normalised integers in [0, 1] or [-1, 1], others as they are.
-/// least_components  an element may have fewer numbers than `components`, but not fewer than this; 1 stands for the
-/// rest selection         which elements, ascending; empty = all Throws Error for what does not fit: type, range,
-/// sparse indices.
+/// components        1 to 4
+/// least_components  an element may have fewer numbers than `components`, but not fewer than this; 1 stands for those
+///                   that it lacks
+/// selection         which elements, ascending; empty = all
+/// Throws Error for what does not fit: type, range, sparse indices.
 std::vector<float> readAccessor(GltfDocument& document, int accessor, int components, int least_components,
                                 std::span<const std::uint32_t> selection);
 

@@ -252,25 +252,25 @@ CullTimes timeCulling(const pipeline::PreparedScene& scene, const scenes::Camera
   const pipeline::View view{scenes::clipFromView(camera, kAspect) * scenes::viewFromWorld(camera),
                             DVec4(camera.eye, 1.0), pipeline::Viewport(kWidth, kHeight)};
   const pipeline::InstanceView instance = pipeline::viewInstance(scene.instances[0], mesh.bounds, view, true);
-  std::vector<pipeline::DrawnPatch> drawn;
-  pipeline::Counters counters;
+  pipeline::CulledPatches culled;
+  std::vector<pipeline::DrawnPatch>& drawn = culled.drawn;
   const auto cull = [&](Culling culling) {
     drawn.clear();
-    counters = {};
+    culled.boxes_tested = 0;
     for (std::uint32_t part = 0; part < mesh.tree.partCount(); ++part)
-      cullPart({0, part}, mesh.tree, culling, instance, true, drawn, counters);
+      cullPart({0, part}, mesh.tree, culling, instance, culled);
   };
   const auto by_reference = [&] {
     drawn.clear();
     for (std::uint32_t p = 0; p < mesh.patches.size(); ++p) {
-      const pipeline::PatchVisibility seen = classifyPatch(mesh.patches[p], instance, true);
+      const pipeline::PatchVisibility seen = classifyPatch(mesh.patches[p], instance);
       if (seen != pipeline::PatchVisibility::kOutside && seen != pipeline::PatchVisibility::kBackFacing)
         drawn.push_back({0, p, seen});
     }
   };
   const std::vector<Spread> times =
       timeInTurns({by_reference, [&] { cull(Culling::kPatches); }, [&] { cull(Culling::kTree); }}, 31, 5, 1);
-  return {drawn.size(), counters.boxes_tested, times[0], times[1], times[2]};
+  return {drawn.size(), culled.boxes_tested, times[0], times[1], times[2]};
 }
 
 std::string microseconds(const Spread& ns) {

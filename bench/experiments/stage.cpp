@@ -223,7 +223,7 @@ KernelTimes timeKernels(const PreparedMesh& mesh, std::size_t patches, int round
       pipeline::RunStart start(runs.patches[p]);
       for (std::uint32_t r = 0; r < runs.patches[p].run_count; ++r) {
         const grouping::VertexRun& run = runs.runs[runs.patches[p].first_run + r];
-        pipeline::transformRun(runs, runs.patches[p], run, start, 0, run.vertex_count, m, clip);
+        pipeline::transformRun(runs, runs.patches[p], {run, start, 0, run.vertex_count}, m, clip);
         start.skip(run);
       }
     }

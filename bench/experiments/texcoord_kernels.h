@@ -1,6 +1,5 @@
 // bench/experiments/texcoord_kernels: texture coordinates of a whole mesh, by a matrix or from positions, with and
-// without groups. Structures of arrays; compiled twice: in plain C++ without vectors, and vectorised for AVX2 by the
-// compiler.
+// without groups. Structures of arrays; compiled twice: in plain C++ without vectors, and vectorised for AVX2 by GCC.
 //   Out    retained ones first, then by group, as scalar_kernels.h
 #pragma once
 

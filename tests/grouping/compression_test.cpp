@@ -2,9 +2,12 @@
 
 #include <doctest/doctest.h>
 
+#include <set>
+
 #include "grouping/groups_file.h"
 #include "grouping/linear_groups.h"
 #include "grouping/planar_groups.h"
+#include "grouping/plane_sets.h"
 #include "tests/grouping/shapes.h"
 
 namespace sheaf::grouping {
@@ -32,6 +35,28 @@ TEST_CASE("grouping/compression: linear groups need one number for a grouped ver
   const VertexGroups groups = groupLinear(mesh, {});
   const CompressionFigures figures = measureCompression(mesh, groups, 16);
   CHECK(figures.grouped_parameters == doctest::Approx(16.0 * groups.stats.eliminated));
+}
+
+TEST_CASE("grouping/compression: a frame is stored where a group is in it, and only once") {
+  std::mt19937 rng(0xc0e1);
+  const mesh::Mesh mesh = lumpyBall(rng, 30, 40, 0.002F);
+  PlanarOptions options;
+  options.planes = dodecahedronPlanes();
+  VertexGroups groups = groupPlanar(mesh, options);
+  const auto frames = [&] {
+    std::set<std::uint32_t> used;
+    for (const VertexGroup& g : groups.groups) used.insert(g.plane);
+    return used.size();
+  };
+  REQUIRE(frames() > 1);
+  REQUIRE(groups.groups.size() > frames());
+  const double before = measureCompression(mesh, groups, 14).grouped_retained;
+  groups.planes.resize(groups.planes.size() + 1000, groups.planes.front());
+  CHECK(measureCompression(mesh, groups, 14).grouped_retained == before);
+  const std::size_t frames_before = frames();
+  for (VertexGroup& g : groups.groups) g.plane = groups.groups.front().plane;
+  const double saved = 48.0 * static_cast<double>(frames_before - 1) / groups.stats.vertices;
+  CHECK(measureCompression(mesh, groups, 14).grouped_retained == doctest::Approx(before - saved));
 }
 
 TEST_CASE("grouping/compression: sets without spread, without faces, without vertices") {

@@ -61,6 +61,16 @@ TEST_CASE("mesh/weld: many vertices at one place and no vertex at all") {
   CHECK(weldVertices(m) == 99'999);
 }
 
+TEST_CASE("mesh/weld: the first vertex at a place stands for all that are there, NaN for itself") {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<Vec3> positions = {
+      {1.0F, 0.0F, 2.0F}, {nan, 0.0F, 0.0F}, {1.0F, -0.0F, 2.0F},
+      {1.0F, 0.0F, 3.0F}, {nan, 0.0F, 0.0F}, {1.0F, 0.0F, 2.0F},
+  };
+  CHECK(firstAtSamePlace(positions) == std::vector<std::uint32_t>{0, 1, 0, 3, 4, 0});
+  CHECK(firstAtSamePlace({}).empty());
+}
+
 TEST_CASE("mesh/weld: triangles that cannot be drawn are dropped, the others keep their order") {
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
   Mesh m = makeGrid(1);

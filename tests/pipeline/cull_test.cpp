@@ -27,7 +27,7 @@ TEST_CASE("pipeline/cull: a rejected patch has no point in view, an inner one no
       patch.bounds.extend(p);
     }
     const InstanceView view = viewInstance(random.instance, patch.bounds, random.view, true);
-    const PatchVisibility seen = classifyPatch(patch, view, true);
+    const PatchVisibility seen = classifyPatch(patch, view);
     CHECK(view.visible == (seen != PatchVisibility::kOutside));
     outside += seen == PatchVisibility::kOutside;
     inside += seen == PatchVisibility::kInside;
@@ -69,10 +69,11 @@ TEST_CASE("pipeline/cull: a patch rejected by its cone shows no front face") {
       min_cos = std::min(min_cos, glm::dot(n, axis));
     }
     patch.cone.sin_angle = std::sqrt(1.0F - min_cos * min_cos) + 1e-4F;
-    const InstanceView view = viewInstance(random.instance, patch.bounds, random.view, true);
-    if (classifyPatch(patch, view, true) != PatchVisibility::kBackFacing) continue;
+    InstanceView view = viewInstance(random.instance, patch.bounds, random.view, true);
+    if (classifyPatch(patch, view) != PatchVisibility::kBackFacing) continue;
     ++rejected;
-    CHECK(classifyPatch(patch, view, false) != PatchVisibility::kBackFacing);
+    view.culls_back = false;
+    CHECK(classifyPatch(patch, view) != PatchVisibility::kBackFacing);
     for (const auto& t : triangles) {
       // Seen from the eye in world space; a mirroring transform turns the winding, not the side.
       std::array<DVec3, 3> w;

@@ -163,7 +163,7 @@ TEST_CASE("pipeline/grouped: by lines, what differs from the ungrouped snapped m
       // V1' + s L' rounds otherwise than M (V1 + s L), by a few units in the last place: less than a subpixel, so that
       // only pixels whose centres lie within that of an edge can show another triangle.
       const raster::ImageDifference difference = raster::compareImages(grouped.color, expected.color);
-      CHECK(difference.differing_pixels * 100 <= kWidth * kHeight);
+      CHECK(difference.differing_pixels <= 50);  // 38 seen where the near plane cuts the scene, else 2 at most
     }
   }
 }

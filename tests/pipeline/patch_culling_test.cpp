@@ -29,10 +29,9 @@ std::vector<Patch> randomPatches(std::size_t count, std::mt19937& rng) {
 }
 
 std::vector<PatchVisibility> seenOf(const PatchTree& tree, Culling culling, const InstanceView& view,
-                                    bool back_faces_culled, Counters& counters) {
-  std::vector<DrawnPatch> drawn;
-  for (std::uint32_t part = 0; part < tree.partCount(); ++part)
-    cullPart({7, part}, tree, culling, view, back_faces_culled, drawn, counters);
+                                    CulledPatches& culled) {
+  for (std::uint32_t part = 0; part < tree.partCount(); ++part) cullPart({7, part}, tree, culling, view, culled);
+  const std::vector<DrawnPatch>& drawn = culled.drawn;
   std::vector<PatchVisibility> seen(tree.patch_count, PatchVisibility::kOutside);  // or back-facing: not drawn
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     REQUIRE(drawn[i].patch < tree.patch_count);
@@ -55,15 +54,15 @@ TEST_CASE("pipeline/patch_culling: kernels say of every patch what the reference
       const std::vector<Patch> patches = randomPatches(count, rng);
       const PatchTree tree = grouping::buildPatchTree(patches);
       const RandomView random = randomView(rng);
-      const InstanceView view = viewInstance(random.instance, Box3(), random.view, false);
-      const bool back_faces_culled = i % 3 != 0;
-      Counters expected_counts;
+      InstanceView view = viewInstance(random.instance, Box3(), random.view, false);
+      view.culls_back = i % 3 != 0;
+      CulledPatches expected_counts;
       std::vector<PatchVisibility> expected;
       for (const Patch& patch : patches) {
-        PatchVisibility seen = classifyPatch(patch, view, back_faces_culled);
-        if (seen == PatchVisibility::kOutside) ++expected_counts.patches_outside;
+        PatchVisibility seen = classifyPatch(patch, view);
+        if (seen == PatchVisibility::kOutside) ++expected_counts.outside;
         if (seen == PatchVisibility::kBackFacing) {
-          ++expected_counts.patches_back_facing;
+          ++expected_counts.back_facing;
           seen = PatchVisibility::kOutside;
         }
         inside += seen == PatchVisibility::kInside;
@@ -71,15 +70,15 @@ TEST_CASE("pipeline/patch_culling: kernels say of every patch what the reference
         straddling += seen == PatchVisibility::kStraddling;
         expected.push_back(seen);
       }
-      back_facing += expected_counts.patches_back_facing;
+      back_facing += expected_counts.back_facing;
       forEachTarget([&] {
         for (const Culling culling : {Culling::kPatches, Culling::kTree}) {
-          Counters counters;
-          CHECK(seenOf(tree, culling, view, back_faces_culled, counters) == expected);
-          CHECK(counters.patches_outside == expected_counts.patches_outside);
-          CHECK(counters.patches_back_facing == expected_counts.patches_back_facing);
-          if (culling == Culling::kPatches) CHECK(counters.boxes_tested == count);
-          if (culling == Culling::kTree && count == 5000) saved += counters.boxes_tested < 5000 ? 1 : 0;
+          CulledPatches culled;
+          CHECK(seenOf(tree, culling, view, culled) == expected);
+          CHECK(culled.outside == expected_counts.outside);
+          CHECK(culled.back_facing == expected_counts.back_facing);
+          if (culling == Culling::kPatches) CHECK(culled.boxes_tested == count);
+          if (culling == Culling::kTree && count == 5000) saved += culled.boxes_tested < 5000 ? 1 : 0;
         }
       });
     }
@@ -100,12 +99,13 @@ TEST_CASE("pipeline/patch_culling: one box is enough where all patches are out o
   for (const double z : {0.5, 5.0}) {
     CAPTURE(z);
     instance.world_from_object[3] = DVec4(0.0, 0.0, z, 1.0);
-    const InstanceView instance_view = viewInstance(instance, Box3(), view, false);
-    Counters counters;
-    const auto seen = seenOf(tree, Culling::kTree, instance_view, false, counters);
+    InstanceView instance_view = viewInstance(instance, Box3(), view, false);
+    instance_view.culls_back = false;
+    CulledPatches culled;
+    const auto seen = seenOf(tree, Culling::kTree, instance_view, culled);
     const auto expected = z < 1.0 ? PatchVisibility::kInside : PatchVisibility::kOutside;
     CHECK(std::ranges::count(seen, expected) == 4096);
-    CHECK(counters.boxes_tested == 16);  // those of the highest level
+    CHECK(culled.boxes_tested == 16);  // those of the highest level
   }
 }
 
@@ -113,11 +113,10 @@ TEST_CASE("pipeline/patch_culling: without culling every patch is drawn and none
   std::mt19937 rng(93);
   const PatchTree tree = grouping::buildPatchTree(randomPatches(5000, rng));
   const RandomView random = randomView(rng);
-  Counters counters;
-  const auto seen =
-      seenOf(tree, Culling::kNone, viewInstance(random.instance, Box3(), random.view, false), true, counters);
+  CulledPatches culled;
+  const auto seen = seenOf(tree, Culling::kNone, viewInstance(random.instance, Box3(), random.view, false), culled);
   CHECK(std::ranges::count(seen, PatchVisibility::kStraddling) == 5000);
-  CHECK(counters.boxes_tested == 0);
+  CHECK(culled.boxes_tested == 0);
 }
 
 }  // namespace sheaf::pipeline

@@ -56,7 +56,7 @@ Mat4 randomMatrix(std::mt19937& rng) {
 }
 
 void transformWhole(OneRun& one, std::uint32_t count, const Mat4& clip_from_object, ClipVertices& clip) {
-  transformRun(one.vertices, one.patch(), one.run(), RunStart(one.patch()), 0, count, clip_from_object, clip);
+  transformRun(one.vertices, one.patch(), {one.run(), RunStart(one.patch()), 0, count}, clip_from_object, clip);
 }
 
 void checkBits(const ClipVertices& clip, std::uint32_t v, const Vec4& expected) {
@@ -180,7 +180,7 @@ TEST_CASE("pipeline/transform: a vertex on a plane comes out as if it had been t
     runs.quantised.assign(17, static_cast<std::uint32_t>(s) | static_cast<std::uint32_t>(t) << 16);
     const Mat4 clip_from_object = randomMatrix(rng);
     ClipVertices clip;
-    transformRun(runs, runs.patches[0], run, RunStart(patch), 0, 1, clip_from_object, clip);
+    transformRun(runs, runs.patches[0], {run, RunStart(patch), 0, 1}, clip_from_object, clip);
     checkBits(clip, 0, transformVertex(position, clip_from_object));
   }
 }
@@ -228,7 +228,7 @@ TEST_CASE("pipeline/transform: part of a run is written and nothing beside it") 
     transformWhole(one, 100, clip_from_object, whole);
     ClipVertices part;
     std::fill(std::begin(part.x), std::end(part.x), 7.0F);
-    transformRun(one.vertices, one.patch(), one.run(), RunStart(one.patch()), 16, 37, clip_from_object, part);
+    transformRun(one.vertices, one.patch(), {one.run(), RunStart(one.patch()), 16, 37}, clip_from_object, part);
     for (std::uint32_t v = 0; v < 100; ++v) CHECK(part.x[v] == (v >= 16 && v < 37 ? whole.x[v] : 7.0F));
   });
 }

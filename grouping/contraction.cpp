@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <unordered_map>
 #include <utility>
 
@@ -31,7 +32,10 @@ class Contraction {
         slots_(makeSlots(std::exchange(graph.first, {}), moments_of)),
         queue_(edges_, [this](const DualEdge& e) { return costOf(e); }),
         waits_(slots_.size(), false) {
-    for (const DualEdge& e : edges_) ++slots_[e.face[0]].degree, ++slots_[e.face[1]].degree;
+    for (const DualEdge& e : edges_) {
+      assert(e.face[0] < own_);
+      ++slots_[e.face[0]].degree, ++slots_[e.face[1]].degree;
+    }
     std::fill(waits_.begin() + own_, waits_.end(), true);
   }
 
@@ -39,6 +43,8 @@ class Contraction {
     while (queue_.prepareTop()) {
       const std::uint32_t id = queue_.top();
       const DualEdge& e = edges_[id];
+      // Nobody knows here what one that waits will be when it is joined: whoever is to join it waits, too. The cost of
+      // a hub may be out of date, so that its neighbours wait for nothing: later rounds make up for that.
       if (waits_[e.face[0]] || waits_[e.face[1]]) {
         waits_[e.face[0]] = waits_[e.face[1]] = true;
         queue_.pop();

@@ -11,6 +11,7 @@
 #include "grouping/shape_tree.h"
 
 namespace sheaf::grouping {
+
 FaceClusters hierarchyOf(std::uint32_t face_count, std::vector<std::array<std::uint32_t, 2>> children,
                          std::vector<float> cost) {
   FaceClusters out;
@@ -50,7 +51,7 @@ FaceClusters clusterFaces(const mesh::Mesh& mesh, const ClusterOptions& options,
 FaceClusters clusterFaces(const mesh::Mesh& mesh, const ModelFrame& frame, DualGraph graph,
                           const ClusterOptions& options, TaskPool& pool) {
   assert(std::isfinite(options.weights.fit) && std::isfinite(options.weights.direction) &&
-         std::isfinite(options.weights.shape));
+         std::isfinite(options.weights.shape) && std::isfinite(options.weights.balance));
   const std::vector<bool> turned = findTurnedFaces(graph);
   MergeTree tree = contractFaces(mesh, frame, std::move(graph), turned, options.weights, pool);
   FaceClusters clusters =

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cassert>
 #include <numeric>
-#include <span>
 #include <utility>
+
+#include "grouping/graph_parts.h"
 
 namespace sheaf::grouping {
 namespace {
@@ -23,117 +24,6 @@ ClusterMoments momentsOf(const Mesh& mesh, const ModelFrame& frame, std::uint32_
       momentsOfFace(frame(mesh.positions[t[0]]), frame(mesh.positions[t[1]]), frame(mesh.positions[t[2]]), perimeter);
   if (turned) m.area_vector = -m.area_vector;
   return m;
-}
-
-// Clusters in an order in which every run of `size` is a part. A part grows over dual edges from one cluster outwards,
-// so it is compact; where it is walled in by others, it goes on elsewhere.
-struct Parts {
-  std::size_t size = 0;
-  std::vector<std::uint32_t> order;     // #C clusters
-  std::vector<std::uint32_t> position;  // #C, in `order`
-
-  std::size_t count() const { return (order.size() + size - 1) / size; }
-  std::span<const std::uint32_t> clustersOf(std::size_t part) const {
-    const std::size_t begin = part * size;
-    return std::span(order).subspan(begin, std::min(size, order.size() - begin));
-  }
-  std::size_t partOf(std::uint32_t cluster) const { return position[cluster] / size; }
-};
-
-class PartGrower {
- public:
-  PartGrower(const DualGraph& graph, std::size_t size) : graph_(graph) {
-    parts_.size = size;
-    parts_.order.reserve(graph.first.size());
-    parts_.position.assign(graph.first.size(), kNoIndex);
-  }
-
-  Parts grow() {
-    while (parts_.order.size() < graph_.first.size()) growPart();
-    return std::move(parts_);
-  }
-
- private:
-  bool isTaken(std::uint32_t cluster) const { return parts_.position[cluster] != kNoIndex; }
-
-  void take(std::uint32_t cluster) {
-    parts_.position[cluster] = static_cast<std::uint32_t>(parts_.order.size());
-    parts_.order.push_back(cluster);
-  }
-
-  void growPart() {
-    std::size_t next = parts_.order.size();
-    const std::size_t end = std::min(next + parts_.size, graph_.first.size());
-    while (next < end) {
-      if (next == parts_.order.size()) take(nextSeed());
-      forEachNeighbour(parts_.order[next++], [&](std::uint32_t neighbour) {
-        if (isTaken(neighbour)) return;
-        if (parts_.order.size() < end)
-          take(neighbour);
-        else
-          seeds_.push_back(neighbour);
-      });
-    }
-  }
-
-  // The first one outside an earlier part, else the first of another piece of the mesh.
-  std::uint32_t nextSeed() {
-    while (next_seed_ < seeds_.size())
-      if (const std::uint32_t seed = seeds_[next_seed_++]; !isTaken(seed)) return seed;
-    while (isTaken(next_cluster_)) ++next_cluster_;
-    return next_cluster_;
-  }
-
-  template <typename Body>
-  void forEachNeighbour(std::uint32_t cluster, const Body& body) const {
-    for (std::uint32_t id = graph_.first[cluster]; id != kNoIndex;) {
-      const DualEdge& e = graph_.edges[id];
-      const int side = e.sideOf(cluster);
-      body(e.face[1 - side]);
-      id = e.next[side];
-    }
-  }
-
-  const DualGraph& graph_;
-  Parts parts_;
-  std::vector<std::uint32_t> seeds_;  // neighbours of parts, in the order in which they were met
-  std::size_t next_seed_ = 0;
-  std::uint32_t next_cluster_ = 0;
-};
-
-// A part and its halo as a dual graph of their own.
-struct PartGraph {
-  DualGraph graph;
-  std::vector<std::uint32_t> clusters;  // in the whole graph: the part's own, then the halo
-  std::uint32_t own = 0;
-};
-
-PartGraph graphOf(const DualGraph& whole, const Parts& parts, std::size_t part) {
-  PartGraph out;
-  const auto clusters = parts.clustersOf(part);
-  const auto begin = static_cast<std::uint32_t>(part * parts.size);
-  out.own = static_cast<std::uint32_t>(clusters.size());
-  out.clusters.assign(clusters.begin(), clusters.end());
-  std::vector<std::uint32_t> outside;
-  for (std::uint32_t i = 0; i < out.own; ++i)
-    for (std::uint32_t id = whole.first[clusters[i]]; id != kNoIndex;) {
-      const DualEdge& e = whole.edges[id];
-      const int side = e.sideOf(clusters[i]);
-      const std::uint32_t other = parts.position[e.face[1 - side]] - begin;  // beyond `own`: outside
-      if (other > i) out.graph.edges.push_back({{i, other}, {}, e.length, 0.0F, false});
-      if (other >= out.own) outside.push_back(e.face[1 - side]);
-      id = e.next[side];
-    }
-  std::ranges::sort(outside);
-  outside.erase(std::unique(outside.begin(), outside.end()), outside.end());
-  out.clusters.insert(out.clusters.end(), outside.begin(), outside.end());
-  for (DualEdge& e : out.graph.edges)
-    if (e.face[1] >= out.own) {
-      const std::uint32_t cluster = parts.order[begin + e.face[1]];
-      e.face[1] = out.own + static_cast<std::uint32_t>(std::ranges::lower_bound(outside, cluster) - outside.begin());
-    }
-  linkEdges(out.clusters.size(), out.graph);
-  return out;
 }
 
 // What became of a part, and where it goes in the whole.
@@ -159,7 +49,7 @@ class FaceContraction {
 
   // One round: the dual graph of what is left takes the place of the present one.
   void contractInParts(std::size_t part_size) {
-    std::vector<PartResult> results = contractParts(PartGrower(graph_, part_size).grow());
+    std::vector<PartResult> results = contractParts(cutIntoParts(graph_, part_size));
     const std::size_t count = clusterCount();
     graph_ = {};  // makes room
     placeResults(results);
@@ -197,10 +87,10 @@ class FaceContraction {
     pool_.parallelFor(static_cast<int>(count), [&](int part, int) { body(static_cast<std::size_t>(part)); });
   }
 
-  std::vector<PartResult> contractParts(const Parts& parts) const {
+  std::vector<PartResult> contractParts(const GraphParts& parts) const {
     std::vector<PartResult> results(parts.count());
     forEachPart(parts.count(), [&](std::size_t part) {
-      PartGraph g = graphOf(graph_, parts, part);
+      PartGraph g = partGraph(graph_, parts, part);
       PartResult& r = results[part];
       r.rest = contractPart(
           std::move(g.graph), g.own, [&](std::uint32_t i) { return momentsOfCluster(g.clusters[i]); }, weights_);
@@ -336,10 +226,10 @@ MergeTree contractFaces(const Mesh& mesh, const ModelFrame& frame, DualGraph gra
   assert(plan.part_size > 0);
   FaceContraction contraction(mesh, frame, std::move(graph), turned, weights, pool);
   const bool is_in_parts = contraction.clusterCount() > plan.most_at_once;
-  for (std::size_t before = 0;
-       contraction.clusterCount() > plan.most_at_once && contraction.clusterCount() != before;) {
-    before = contraction.clusterCount();
+  while (contraction.clusterCount() > plan.most_at_once) {
+    const std::size_t before = contraction.clusterCount();
     contraction.contractInParts(plan.part_size);
+    if (4 * contraction.clusterCount() > 3 * before) break;  // one part waits for the next: the rest is a chain
   }
   contraction.contractRest();
   MergeTree tree = contraction.takeTree();

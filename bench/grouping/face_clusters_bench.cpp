@@ -35,8 +35,7 @@ double meanDepth(const FaceClusters& clusters) {
   return sum / clusters.faceCount();
 }
 
-void cluster(benchmark::State& state) {
-  const mesh::Mesh& mesh = ball(state.range(0));
+void clusterMesh(benchmark::State& state, const mesh::Mesh& mesh) {
   TaskPool pool(static_cast<int>(state.range(1)));
   FaceClusters clusters;
   std::size_t peak = 0;
@@ -54,6 +53,15 @@ void cluster(benchmark::State& state) {
   state.counters["faces_per_second"] = benchmark::Counter(faces, benchmark::Counter::kIsIterationInvariantRate);
 }
 
+void cluster(benchmark::State& state) {
+  clusterMesh(state, ball(state.range(0)));
+}
+
+// Costs rise steadily outwards, so that parts wait for each other: the worst case of contraction in parts.
+void clusterBowl(benchmark::State& state) {
+  clusterMesh(state, bowl(static_cast<std::uint32_t>(std::sqrt(double(state.range(0)) / 2.0))));
+}
+
 void sizes(benchmark::internal::Benchmark* b) {
   b->ArgNames({"n", "threads"});
   for (const std::int64_t threads : {1, 2})
@@ -62,6 +70,7 @@ void sizes(benchmark::internal::Benchmark* b) {
 }
 
 BENCHMARK(cluster)->Name("grouping/cluster")->Apply(sizes);
+BENCHMARK(clusterBowl)->Name("grouping/cluster_bowl")->Apply(sizes);
 
 }  // namespace
 }  // namespace sheaf::grouping

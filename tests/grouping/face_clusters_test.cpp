@@ -416,19 +416,8 @@ TEST_CASE("grouping/face_clusters: a face with a corner that is not finite is a 
 }
 
 TEST_CASE("grouping/face_clusters: hubs with thousands of neighbours") {
-  // A plate: two flat sides, each a fan, and a rim of squares between them. Front and back grow into hubs that have
-  // every face of the rim as a common neighbour.
   constexpr std::uint32_t kSteps = 3000;
-  mesh::Mesh plate;
-  plate.positions = {{0.0F, 0.0F, 0.1F}, {0.0F, 0.0F, -0.1F}};
-  for (std::uint32_t i = 0; i < kSteps; ++i) {
-    const double phi = 2.0 * kPi * i / kSteps;
-    for (const double z : {0.1, -0.1}) plate.positions.emplace_back(std::cos(phi), std::sin(phi), z);
-  }
-  for (std::uint32_t i = 0; i < kSteps; ++i) {
-    const std::uint32_t a = 2 + 2 * i, b = 2 + 2 * ((i + 1) % kSteps);
-    plate.triangles.insert(plate.triangles.end(), {{0, a, b}, {1, b + 1, a + 1}, {a, a + 1, b}, {b, a + 1, b + 1}});
-  }
+  const mesh::Mesh plate = plateOf(kSteps);
   const FaceClusters clusters = clustersOf(plate, {1.0, 1.0, 0.0, 0.0});
   CHECK(findInconsistency(clusters) == "");
   CHECK(clusters.roots.size() == 1);

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "mesh/mesh.h"
+#include "tests/mesh/meshes.h"
 
 namespace sheaf::grouping {
 
@@ -66,6 +67,32 @@ inline mesh::Mesh lumpyBall(std::mt19937& rng, std::uint32_t rings, std::uint32_
       mesh.triangles.push_back({at(i, k + 1), at(i + 1, k + 1), at(i + 1, k)});
     }
     mesh.triangles.push_back({at(rings - 1, k), at(rings - 1, k + 1), last});
+  }
+  return mesh;
+}
+
+// A round plate: two flat sides, each a fan, and a rim of squares between them. Front and back grow into hubs that have
+// every face of the rim as a common neighbour.
+inline mesh::Mesh plateOf(std::uint32_t steps) {
+  mesh::Mesh plate;
+  plate.positions = {{0.0F, 0.0F, 0.1F}, {0.0F, 0.0F, -0.1F}};
+  for (std::uint32_t i = 0; i < steps; ++i) {
+    const double phi = 2.0 * kPi * i / steps;
+    for (const double z : {0.1, -0.1}) plate.positions.emplace_back(std::cos(phi), std::sin(phi), z);
+  }
+  for (std::uint32_t i = 0; i < steps; ++i) {
+    const std::uint32_t a = 2 + 2 * i, b = 2 + 2 * ((i + 1) % steps);
+    plate.triangles.insert(plate.triangles.end(), {{0, a, b}, {1, b + 1, a + 1}, {a, a + 1, b}, {b, a + 1, b + 1}});
+  }
+  return plate;
+}
+
+// A bowl whose curvature and faces change steadily from the middle outwards: 2 * side^2 faces.
+inline mesh::Mesh bowl(std::uint32_t side) {
+  mesh::Mesh mesh = mesh::makeGrid(side);
+  for (Vec3& p : mesh.positions) {
+    const float u = 2.0F * p.x - 1.0F, v = 2.0F * p.y - 1.0F;
+    p.z = 0.3F * (u * u + v * v);
   }
   return mesh;
 }

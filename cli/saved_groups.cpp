@@ -39,9 +39,10 @@ std::vector<grouping::VertexGroups> groupsByMesh(const grouping::VertexGroups& g
   if (scene.triangleCount() != grouped.triangleCount())
     throw Error(ErrorCode::kBadInput, fmt::format("{}: has changed while it was read", input));
   std::span<const mesh::Triangle> left(grouped.triangles);
+  grouping::GroupCarrier carrier(groups);
   std::vector<grouping::VertexGroups> by_mesh;
   for (const mesh::Mesh& mesh : scene.meshes) {
-    by_mesh.push_back(grouping::carriedOver(groups, mesh, sourcesOf(mesh, left.first(mesh.triangleCount()))));
+    by_mesh.push_back(carrier.carry(mesh, sourcesOf(mesh, left.first(mesh.triangleCount()))));
     left = left.subspan(mesh.triangleCount());
   }
   return by_mesh;

@@ -27,6 +27,8 @@ constexpr const char* kFooter =
     "--color-by group shows what is drawn by planes or lines, by default as --prefer memory draws it. Where these "
     "have\n"
     "few vertices of a patch, vertices are drawn in full and the surface stays white.\n"
+    "--color-by joins all instances to one mesh to find neighbours: they may have 2^32 - 2 vertices in all, and many\n"
+    "instances of a large mesh take memory and time.\n"
     "\n"
     "Saved groups (--from) are drawn as they are: --grouping, --metric, --limit and --epsilon were theirs to choose.\n"
     "Every instance is then a mesh of its own. --color-by group shows them, drawn by planes or in full: a triangle\n"

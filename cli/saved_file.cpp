@@ -4,12 +4,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "cli/group_report.h"
@@ -33,7 +35,10 @@ std::optional<SavedKind> kindOfBytes(std::string_view bytes) {
   return std::nullopt;
 }
 
+/// Of a regular file. Nothing is taken from a pipe, where it would be missing afterwards.
 std::string firstBytes(const std::string& path) {
+  std::error_code ec;
+  if (!std::filesystem::is_regular_file(path, ec)) return {};
   std::string bytes(grouping::kGroupsFileMagic.size(), '\0');
   std::ifstream in(path, std::ios::binary);
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
@@ -132,6 +137,9 @@ bool isSavedFile(const std::string& path) {
 }
 
 SavedKind savedKindOf(const std::string& path) {
+  std::error_code ec;
+  if (std::filesystem::is_other(path, ec))
+    throw Error(ErrorCode::kBadInput, fmt::format("{}: is not a regular file, and has to be read twice", path));
   const std::string bytes = firstBytes(path);
   return kindOrRefusal(bytes.empty() ? readFile(path, false) : bytes, path);  // readFile() says what is wrong
 }

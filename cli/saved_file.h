@@ -7,10 +7,11 @@ namespace sheaf::cli {
 
 enum class SavedKind { kVertexGroups, kFaceClusters };
 
-/// By its name or its first bytes. False for a file that cannot be read, too.
+/// By its name or its first bytes. False for a file that cannot be read, too, and for a pipe.
 bool isSavedFile(const std::string& path);
 
-/// By its first bytes. Throws Error(kBadInput) if it cannot be read or is of neither kind.
+/// By its first bytes. Throws Error(kBadInput) if it cannot be read, is of neither kind or is no regular file: bytes
+/// that were read from a pipe would be missing when it is read for what it holds.
 SavedKind savedKindOf(const std::string& path);
 
 /// Throws Error(kUsage), which says how to use it, for a saved file given as the scene.

@@ -25,23 +25,34 @@ mesh::Mesh groupedMesh(const SceneRequest& request) {
   return scenes::joinedMesh(scenes::loadScene(request.input, import));
 }
 
-/// #V, the vertex of the grouped mesh that each vertex of a drawn one is a copy of: triangles are the same.
-/// grouped  the triangles of the grouped mesh that are this mesh's
-std::vector<std::uint32_t> sourcesOf(const mesh::Mesh& mesh, std::span<const mesh::Triangle> grouped) {
+[[noreturn]] void refuseChanged(const std::string& input) {
+  throw Error(ErrorCode::kBadInput, fmt::format("{}: has changed while it was read", input));
+}
+
+/// #V, the vertex of the grouped mesh that each vertex of a drawn one is a copy of: triangles are the same, and so are
+/// the places of their corners, or the file is not the one that was read first.
+/// triangles  of `grouped`, those that are this mesh's
+std::vector<std::uint32_t> sourcesOf(const mesh::Mesh& mesh, const mesh::Mesh& grouped,
+                                     std::span<const mesh::Triangle> triangles, const std::string& input) {
   std::vector<std::uint32_t> source(mesh.vertexCount(), grouping::kNoIndex);
-  for (std::size_t f = 0; f < grouped.size(); ++f)
-    for (std::size_t k = 0; k < 3; ++k) source[mesh.triangles[f][k]] = grouped[f][k];
+  for (std::size_t f = 0; f < triangles.size(); ++f)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t drawn = mesh.triangles[f][k], from = triangles[f][k];
+      if (mesh.positions[drawn] != grouped.positions[from]) refuseChanged(input);
+      source[drawn] = from;
+    }
   return source;
 }
 
 std::vector<grouping::VertexGroups> groupsByMesh(const grouping::VertexGroups& groups, const mesh::Mesh& grouped,
                                                  const scenes::Scene& scene, const std::string& input) {
-  if (scene.triangleCount() != grouped.triangleCount())
-    throw Error(ErrorCode::kBadInput, fmt::format("{}: has changed while it was read", input));
+  if (scene.triangleCount() != grouped.triangleCount()) refuseChanged(input);
   std::span<const mesh::Triangle> left(grouped.triangles);
+  grouping::GroupCarrier carrier(groups);
   std::vector<grouping::VertexGroups> by_mesh;
   for (const mesh::Mesh& mesh : scene.meshes) {
-    by_mesh.push_back(grouping::carriedOver(groups, mesh, sourcesOf(mesh, left.first(mesh.triangleCount()))));
+    const std::vector<std::uint32_t> source = sourcesOf(mesh, grouped, left.first(mesh.triangleCount()), input);
+    by_mesh.push_back(carrier.carry(mesh, source));
     left = left.subspan(mesh.triangleCount());
   }
   return by_mesh;

@@ -91,41 +91,51 @@ std::vector<bool> aloneAtPlace(const VertexGroups& groups, const PatchSet& set) 
   return alone;
 }
 
-/// The direction that most of the members go across.
+/// The direction that most of the members go across, of equally many the first. members  one or more
 std::uint32_t commonPlane(const VertexGroups& groups, std::span<const Carried> members) {
-  std::vector<std::uint32_t> count(groups.planes.size(), 0);
-  for (const Carried& c : members) ++count[groups.groups[c.group].plane];
-  return static_cast<std::uint32_t>(std::ranges::max_element(count) - count.begin());
+  std::vector<std::uint32_t> planes;
+  for (const Carried& c : members) planes.push_back(groups.groups[c.group].plane);
+  std::ranges::sort(planes);
+  std::uint32_t common = kNoIndex;
+  std::size_t most = 0;
+  for (std::size_t begin = 0, end = 0; begin < planes.size(); begin = end) {
+    while (end < planes.size() && planes[end] == planes[begin]) ++end;
+    if (end - begin > most) most = end - begin, common = planes[begin];
+  }
+  return common;
 }
 
 }  // namespace
 
-VertexGroups carriedOver(const VertexGroups& groups, const mesh::Mesh& mesh, std::span<const std::uint32_t> source) {
+GroupCarrier::GroupCarrier(const VertexGroups& groups)
+    : groups_(groups), member_(memberOfVertex(groups)), copy_(groups.state.size(), kNoIndex) {}
+
+VertexGroups GroupCarrier::carry(const mesh::Mesh& mesh, std::span<const std::uint32_t> source) {
   assert(source.size() == mesh.vertexCount());
   VertexGroups out;
-  copySettings(groups, out);
+  copySettings(groups_, out);
   out.positions = mesh.positions;
   out.state.assign(source.size(), VertexState::kUnused);
   out.owner.assign(source.size(), kNoIndex);
-  const std::vector<std::uint32_t> member = memberOfVertex(groups);
-  std::vector<std::uint32_t> copy(groups.state.size(), kNoIndex);
   std::vector<Carried> members;
   for (std::uint32_t v = 0; v < source.size(); ++v) {
     const std::uint32_t from = source[v];
     if (from == kNoIndex) continue;
-    out.positions[v] = groups.positions[from];
+    out.positions[v] = groups_.positions[from];
     out.state[v] = VertexState::kFree;
-    if (copy[from] == kNoIndex) copy[from] = v;
-    if (member[from] != kNoIndex) members.push_back({0, groups.owner[from], v, member[from]});
+    if (copy_[from] == kNoIndex) copy_[from] = v;
+    if (member_[from] != kNoIndex) members.push_back({0, groups_.owner[from], v, member_[from]});
   }
-  const auto copyOf = [&](std::uint32_t v) { return v == kNoIndex ? kNoIndex : copy[v]; };
+  const auto copyOf = [&](std::uint32_t v) { return v == kNoIndex ? kNoIndex : copy_[v]; };
   const auto groupOf = [&](const Carried& c) {
-    VertexGroup group = groups.groups[c.group];
+    VertexGroup group = groups_.groups[c.group];
     group.origin = copyOf(group.origin);
     group.end = copyOf(group.end);
     return group;
   };
-  gather(groups, std::move(members), groupOf, out);
+  gather(groups_, std::move(members), groupOf, out);
+  for (const std::uint32_t from : source)
+    if (from != kNoIndex) copy_[from] = kNoIndex;
   return out;
 }
 

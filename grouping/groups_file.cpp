@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <optional>
 
 #include "core/error.h"
@@ -139,6 +140,15 @@ std::string encodeContent(const VertexGroups& groups, int bits) {
   return out.take();
 }
 
+// A right-handed frame of unit axes, as drawing takes it to be: its inverse is its transpose.
+bool isOrthonormal(const PlaneFrame& frame) {
+  constexpr double kTolerance = 1e-5;
+  const DVec3 s(frame.axis_s), t(frame.axis_t), off = glm::cross(s, t) - DVec3(frame.normal);
+  for (const double error : {glm::dot(s, s) - 1.0, glm::dot(t, t) - 1.0, glm::dot(s, t), off.x, off.y, off.z})
+    if (!(std::abs(error) <= kTolerance)) return false;  // also of no number
+  return true;
+}
+
 // Reads the content. Every refusal goes through fail(); counts are held against the bytes that are left before any
 // memory is taken for them.
 class Decoder {
@@ -191,7 +201,10 @@ class Decoder {
     for (std::uint32_t i = 0; i < warning_count; ++i) out_.warnings.push_back(in_.getText());
     const auto plane_count = in_.get<std::uint32_t>();
     if (plane_count > in_.left() / sizeof(PlaneFrame)) fail("more planes than bytes");
-    for (std::uint32_t i = 0; i < plane_count; ++i) out_.planes.push_back(in_.get<PlaneFrame>());
+    for (std::uint32_t i = 0; i < plane_count; ++i) {
+      out_.planes.push_back(in_.get<PlaneFrame>());
+      if (!isOrthonormal(out_.planes.back())) fail(fmt::format("plane {} has no orthonormal frame", i));
+    }
   }
 
   void getVertices() {
@@ -256,7 +269,9 @@ class Decoder {
     for (std::size_t m = g.first_member; m < out_.members.size(); ++m) {
       g.s_min = std::min(g.s_min, out_.s[m]), g.s_max = std::max(g.s_max, out_.s[m]);
       g.t_min = std::min(g.t_min, out_.t[m]), g.t_max = std::max(g.t_max, out_.t[m]);
-      out_.positions[out_.members[m]] = pointOn(g, out_.s[m], out_.t[m]);
+      Vec3& position = out_.positions[out_.members[m]];
+      position = pointOn(g, out_.s[m], out_.t[m]);
+      if (!isFinite(position)) fail(fmt::format("member {} lies nowhere", out_.members[m]));
     }
   }
 
@@ -298,6 +313,11 @@ VertexGroups loadGroups(const std::filesystem::path& path, const mesh::Mesh& mes
   if (groups.state.size() != mesh.vertexCount())
     refuse(fmt::format("its groups are of {} vertices, the mesh has {}", groups.state.size(), mesh.vertexCount()));
   if (groups.mesh_checksum != meshChecksum(mesh)) refuse("as many vertices, but at other places or in other faces");
+  // The checksum stands in the file, as the places do. Bits, for unused vertices may have no number.
+  for (std::size_t v = 0; v < mesh.vertexCount(); ++v)
+    if (groups.state[v] != VertexState::kGrouped &&
+        std::memcmp(&groups.positions[v], &mesh.positions[v], sizeof(Vec3)) != 0)
+      refuse(fmt::format("vertex {} is in no group, but not where the mesh has it", v));
   return groups;
 }
 

@@ -3,8 +3,8 @@
 //          one, the parameters of a grouped one; everything else follows from these
 //   Keeps  loading what was saved gives an equal value, if the parameters are not quantised
 //   Trust  none: a file with any byte changed is refused by its checksum; one with a right checksum is checked field by
-//          field and as a whole (findInconsistency) before it is returned. Whether it belongs to a mesh says the
-//          checksum of the mesh
+//          field and as a whole (findInconsistency) before it is returned: frames are orthonormal, members somewhere.
+//          Whether it belongs to a mesh say the checksum of the mesh and the vertices that are in no group
 #pragma once
 
 #include <cstdint>

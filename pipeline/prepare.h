@@ -77,8 +77,8 @@ struct PreparedMesh {
   std::uint64_t triangle_count = 0;
   /// What grouping did to the mesh as it is drawn; counts are 0 when it was not grouped.
   grouping::GroupingStats grouping;
-  double extent =
-      0.0;  ///< longest edge of the mesh's box, or of what was grouped as one: the unit of the figures above
+  /// Longest edge of the mesh's box, or of what was grouped as one: the unit of the figures above.
+  double extent = 0.0;
 
   /// By slot; null where shading does not need it.
   const float* shadingPosition(std::size_t axis) const;

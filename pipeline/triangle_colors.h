@@ -38,7 +38,8 @@ void whitenSurfaces(scenes::Scene& scene);
 /// By instance.
 std::vector<std::size_t> faceCountsOf(const scenes::Scene& scene);
 
-/// To be had before prepareScene() takes the meshes.
+/// To be had before prepareScene() takes the meshes. Joins every instance: a mesh that is there a thousand times costs
+/// the time and memory of a thousand meshes. Throws Error(kUnsupported) as scenes::joinedMesh() does.
 SceneSurface surfaceOf(const scenes::Scene& scene);
 
 /// Of parts of scenes::joinedMesh(scene), such as face clusters.
@@ -51,7 +52,8 @@ TriangleColors colorsByPart(std::span<const std::uint32_t> part_of_face, std::sp
 /// #F, the group that at least two corners of a triangle are in, kNoIndex if there is none.
 std::vector<std::uint32_t> groupOfFace(const grouping::VertexGroups& groups, std::span<const mesh::Triangle> triangles);
 
-/// Each instance has patches of its own. surface  of the scene that `scene` was prepared from
+/// Each instance has patches of its own.
+/// surface  of the scene that `scene` was prepared from
 TriangleColors colorsByPatch(const PreparedScene& scene, const SceneSurface& surface);
 
 /// A triangle belongs to the plane or line that at least two of its corners are drawn by. Others, and all of a scene

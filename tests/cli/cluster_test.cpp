@@ -234,24 +234,29 @@ TEST_CASE("cli/cluster: a hierarchy that is damaged or of another mesh is refuse
   folder.write("moved.obj", moved.replace(moved.find("v 6 5 5"), 7, "v 7 5 5"));
   clusterJson(folder, "three.obj", {"--hierarchy", "three.sheaf"});
   const std::size_t files = folder.fileCount();
+  const auto refusedBy = [&](const char* command, const std::string& input, const std::string& file,
+                             const std::string& reason) {
+    Words words = {command, input, "--from", file, "-o", "a.png", "--size", "64x48"};
+    if (std::string(command) == "render") words.insert(words.end(), {"--color-by", "cluster"});
+    const RunResult result = runSheaf(folder, words);
+    CAPTURE(result.err);
+    CHECK(result.code == 3);
+    CHECK(result.out.empty());
+    CHECK(isOneErrorLine(result.err));
+    CHECK(result.err.starts_with("sheaf: " + file + ": "));
+    CHECK(result.err.find(reason) != std::string::npos);
+    CHECK(folder.fileCount() == files);
+  };
   const auto refused = [&](const std::string& input, const std::string& file, const std::string& reason) {
-    for (const char* command : {"cluster", "render"}) {
-      Words words = {command, input, "--from", file, "-o", "a.png", "--size", "64x48"};
-      if (std::string(command) == "render") words.insert(words.end(), {"--color-by", "cluster"});
-      const RunResult result = runSheaf(folder, words);
-      CAPTURE(result.err);
-      CHECK(result.code == 3);
-      CHECK(result.out.empty());
-      CHECK(isOneErrorLine(result.err));
-      CHECK(result.err.starts_with("sheaf: " + file + ": "));
-      CHECK(result.err.find(reason) != std::string::npos);
-      CHECK(folder.fileCount() == files);
-    }
+    for (const char* command : {"cluster", "render"}) refusedBy(command, input, file, reason);
   };
   refused(kSphere, "cut.sheaf", "bytes of face clusters in place of");
   refused(kSphere, "flipped.sheaf", "is damaged: checksum");
-  refused(kSphere, "text.sheaf", " face clusters");
-  refused(kSphere, "none.sheaf", "");
+  refusedBy("cluster", kSphere, "text.sheaf", "text.sheaf: is not a file of face clusters\n");
+  // Which of its two kinds of files it is given is for render to find out.
+  refusedBy("render", kSphere, "text.sheaf",
+            "text.sheaf: is no file that sheaf has saved, neither vertex groups nor face clusters\n");
+  refused(kSphere, "none.sheaf", "none.sheaf: cannot be opened: ");
   refused("builtin:sphere?n=20", "a.sheaf", "belongs to another mesh: its clusters are of");
   refused("moved.obj", "three.sheaf", "belongs to another mesh: as many faces, but other corners");
 }

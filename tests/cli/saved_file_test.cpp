@@ -1,9 +1,12 @@
 // Files that sheaf has saved, looked at and used again, run as a whole.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <tuple>
+#include <utility>
 
 #include "grouping/clusters_file.h"
 #include "grouping/groups_file.h"
@@ -185,6 +188,7 @@ TEST_CASE("cli/saved_file: what --from cannot be used for is refused: one line, 
       {{"cluster", "h.sheaf", "-o", "x.png"}, 2, "give the mesh"},
       {{"simplify", "h.sheaf", "--faces", "9", "-o", "x.ply"}, 2, "give the mesh"},
       {{"render", kTeapot, "--from", "missing.sheaf", "-o", "x.png"}, 3, "missing.sheaf: cannot be opened"},
+      {{"render", kTeapot, "--from", "/dev/null", "-o", "x.png"}, 3, "/dev/null: is not a regular file"},
       {{"render", kTeapot, "--from", "", "-o", "x.png"}, 2, "--from: the name of the file is empty"},
       {{"render", kTeapot, "--from", "h.sheaf", "-o", "x.png"}, 2, "holds face clusters: add --color-by cluster"},
       {{"render", kTeapot, "--from", "g.sheaf", "--grouping", "planar", "-o", "x.png"}, 2, "--grouping decides how"},
@@ -202,6 +206,34 @@ TEST_CASE("cli/saved_file: what --from cannot be used for is refused: one line, 
     CHECK(result.err.find(reason) != std::string::npos);
     CHECK(folder.fileCount() == 2);
   }
+}
+
+TEST_CASE("cli/saved_file: forged groups are not drawn: one line, no file") {
+  const TempFolder folder;
+  run(folder, {"group", kTeapot, "-o", "g.sheaf"});
+  const grouping::VertexGroups good = grouping::loadGroups(folder.file("g.sheaf"));
+  const auto free =
+      static_cast<std::size_t>(std::ranges::find(good.state, grouping::VertexState::kFree) - good.state.begin());
+  REQUIRE(free < good.state.size());
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  grouping::VertexGroups no_normal = good, nowhere = good, far = good;
+  no_normal.planes[0].normal = Vec3(kNan);
+  nowhere.positions[free] = Vec3(kNan);
+  far.positions[free] = Vec3(1e38F);
+  for (const auto& [forged, reason] :
+       {std::pair{no_normal, "f.sheaf: damaged vertex groups: plane 0 has no orthonormal frame"},
+        {nowhere, "is in no group, but not where the mesh has it"},
+        {far, "is in no group, but not where the mesh has it"}})
+    for (const char* command : {"render", "compare"}) {
+      grouping::saveGroups(folder.file("f.sheaf"), forged);
+      const RunResult result = runSheaf(folder, {command, kTeapot, "--from", "f.sheaf", "-o", "x.png"});
+      CAPTURE(result.err);
+      CHECK(result.code == 3);
+      CHECK(result.out.empty());
+      CHECK(isOneErrorLine(result.err));
+      CHECK(result.err.find(reason) != std::string::npos);
+      CHECK(folder.fileCount() == 2);
+    }
 }
 
 }  // namespace sheaf::cli

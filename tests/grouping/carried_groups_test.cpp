@@ -66,7 +66,7 @@ TEST_CASE("grouping/carried_groups: every copy is in its vertex' group and lies 
   for (const VertexGroups& groups : assortedGroups(mesh))
     for (const std::size_t faces : {mesh.triangleCount(), mesh.triangleCount() / 3}) {
       const Copies copies = copiesOf(mesh, faces);
-      VertexGroups carried = carriedOver(groups, copies.mesh, copies.source);
+      VertexGroups carried = GroupCarrier(groups).carry(copies.mesh, copies.source);
       measure(copies.mesh.positions, copies.mesh.triangles, carried);
       CHECK(findInconsistency(carried) == "");
       REQUIRE(carried.state.size() == copies.source.size());
@@ -92,11 +92,23 @@ TEST_CASE("grouping/carried_groups: a mesh whose vertices are its own copies has
   std::vector<std::uint32_t> same(mesh.vertexCount());
   for (std::uint32_t v = 0; v < same.size(); ++v) same[v] = v;
   for (const VertexGroups& groups : assortedGroups(mesh)) {
-    VertexGroups carried = carriedOver(groups, mesh, same);
+    VertexGroups carried = GroupCarrier(groups).carry(mesh, same);
     measure(mesh.positions, mesh.triangles, carried);
     carried.stats.restored_vertices = groups.stats.restored_vertices;
     carried.warnings = groups.warnings;
     CHECK(carried == groups);
+  }
+}
+
+TEST_CASE("grouping/carried_groups: what was carried before leaves no trace") {
+  const mesh::Mesh mesh = ball();
+  const std::size_t all = mesh.triangleCount();
+  for (const VertexGroups& groups : assortedGroups(mesh)) {
+    GroupCarrier carrier(groups);
+    for (const std::size_t faces : {all, all / 3, all / 2, all}) {
+      const Copies copies = copiesOf(mesh, faces);
+      CHECK(carrier.carry(copies.mesh, copies.source) == GroupCarrier(groups).carry(copies.mesh, copies.source));
+    }
   }
 }
 
@@ -105,7 +117,8 @@ TEST_CASE("grouping/carried_groups: by patch, groups have their patch's frame, a
   const Copies copies = copiesOf(ball(), ball().triangleCount());
   PlanarOptions options;
   options.planes = dodecahedronPlanes();
-  const VertexGroups found = carriedOver(groupPlanar(ball(), options), copies.mesh, copies.source);
+  const VertexGroups on_ball = groupPlanar(ball(), options);
+  const VertexGroups found = GroupCarrier(on_ball).carry(copies.mesh, copies.source);
   const PatchSet set = splitIntoPatches(copies.mesh, {}, pool);
   VertexGroups framed = framedByPatch(found, set);
   measure(copies.mesh.positions, copies.mesh.triangles, framed);

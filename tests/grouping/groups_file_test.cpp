@@ -1,8 +1,11 @@
 #include "grouping/groups_file.h"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -118,6 +121,41 @@ TEST_CASE("grouping/groups_file: a forged file is refused or consistent") {
     }
 }
 
+TEST_CASE("grouping/groups_file: a forged frame that is not orthonormal, or a member that is nowhere, is refused") {
+  const auto refusal = [](const VertexGroups& forged) {
+    try {
+      decodeGroups(encodeGroups(forged), "x");
+    } catch (const Error& error) {
+      CHECK(error.code() == ErrorCode::kBadInput);
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
+  const VertexGroups good = smallGroups(GroupKind::kPlane);
+  REQUIRE(good.planes.size() > 1);
+  REQUIRE(refusal(good) == "");
+  const Vec3 normal = good.planes[1].normal, s = good.planes[1].axis_s, t = good.planes[1].axis_t;
+  for (const PlaneFrame& frame :
+       {PlaneFrame{Vec3(kNan), s, t}, PlaneFrame{normal * kInf, s, t}, PlaneFrame{Vec3(0.0F), s, t},
+        PlaneFrame{-normal, s, t}, PlaneFrame{normal, Vec3(kNan), t}, PlaneFrame{normal, 1.001F * s, t},
+        PlaneFrame{normal, s, s + t}, PlaneFrame{normal, t, s}, PlaneFrame{normal, s, Vec3(1e30F)}}) {
+    VertexGroups forged = good;
+    forged.planes[1] = frame;
+    CHECK(refusal(forged) == "x: damaged vertex groups: plane 1 has no orthonormal frame");
+  }
+  for (const GroupKind kind : {GroupKind::kPlane, GroupKind::kLine})
+    for (const float at : {kNan, kInf, -kInf}) {
+      VertexGroups forged = smallGroups(kind);
+      REQUIRE(!forged.members.empty());
+      forged.s[0] = at;
+      CHECK(refusal(forged) == fmt::format("x: damaged vertex groups: member {} lies nowhere", forged.members[0]));
+      forged = smallGroups(kind);
+      forged.groups[0].base.y = at;
+      CHECK(refusal(forged) == fmt::format("x: damaged vertex groups: member {} lies nowhere", forged.members[0]));
+    }
+}
+
 TEST_CASE("grouping/groups_file: a truncated or extended file is refused") {
   const std::string good = encodeGroups(smallGroups(GroupKind::kPlane));
   for (std::size_t size = 0; size < good.size(); ++size) {
@@ -172,12 +210,45 @@ TEST_CASE("grouping/groups_file: saved groups are taken only for their own mesh,
   CHECK(refusal(larger).find("its groups are of") != std::string::npos);
 }
 
+TEST_CASE("grouping/groups_file: saved groups with a vertex that is in no group at another place are refused") {
+  std::mt19937 rng(0xf122);
+  mesh::Mesh mesh = lumpyBall(rng, 12, 16, 0.01F);
+  mesh.positions.emplace_back(0.0F);  // unused
+  const TempFolder folder;
+  PlanarOptions options;
+  options.epsilon = 0.001;
+  VertexGroups good = groupPlanar(mesh, options);
+  good.mesh_checksum = meshChecksum(mesh);
+  for (const VertexState state : {VertexState::kFree, VertexState::kDefining, VertexState::kUnused}) {
+    const auto v = static_cast<std::size_t>(std::ranges::find(good.state, state) - good.state.begin());
+    REQUIRE(v < good.state.size());
+    for (const float x : {std::numeric_limits<float>::quiet_NaN(), 1e38F,
+                          std::nextafter(mesh.positions[v].x, std::numeric_limits<float>::infinity())}) {
+      VertexGroups forged = good;
+      forged.positions[v].x = x;
+      saveGroups(folder.file("a.sheaf"), forged);
+      CHECK_NOTHROW(loadGroups(folder.file("a.sheaf")));
+      CHECK_THROWS_WITH_AS(loadGroups(folder.file("a.sheaf"), mesh),
+                           fmt::format("{}: belongs to another mesh: vertex {} is in no group, but not where the mesh "
+                                       "has it",
+                                       folder.file("a.sheaf"), v)
+                               .c_str(),
+                           Error);
+    }
+  }
+}
+
 TEST_CASE("grouping/groups_file: unused vertices keep their bits, also those of no number") {
   std::mt19937 rng(0xf120);
   mesh::Mesh mesh = lumpyBall(rng, 6, 8);
   mesh.positions.push_back(Vec3(std::numeric_limits<float>::quiet_NaN()));
-  const std::string bytes = encodeGroups(groupPlanar(mesh, {}));
+  VertexGroups groups = groupPlanar(mesh, {});
+  groups.mesh_checksum = meshChecksum(mesh);
+  const std::string bytes = encodeGroups(groups);
   CHECK(encodeGroups(decodeGroups(bytes, "x")) == bytes);
+  const TempFolder folder;
+  saveGroups(folder.file("a.sheaf"), groups);
+  CHECK(encodeGroups(loadGroups(folder.file("a.sheaf"), mesh)) == bytes);
 }
 
 }  // namespace sheaf::grouping

@@ -2,7 +2,10 @@
 
 #include <doctest/doctest.h>
 
+#include <cstddef>
 #include <glm/gtc/matrix_transform.hpp>
+#include <numeric>
+#include <vector>
 
 #include "grouping/cluster_cuts.h"
 #include "tests/grouping/shapes.h"
@@ -162,15 +165,20 @@ TEST_CASE("pipeline/overlays: a bar is as wide in the picture near and far, seen
       Frame frame;
       Renderer(pool).render(prepared, fitted, allChannels(height, height), frame);
       // Rows cross the two long edges, one left and one right of the middle.
-      int rows = 0;
+      std::vector<int> widths;  // far to near
       for (int y = 0; y < height; ++y) {
         int left = 0;
         for (int x = 0; x < height / 2 - 4; ++x) left += frame.instance_id.at(x, y) == 1;
         if (left == 0 || left > 8) continue;  // beyond the ends, or along one
-        ++rows;
+        widths.push_back(left);
         CHECK(left <= 4);  // 1.6 pixels, at a slant
       }
-      CHECK(rows > height / 8);
+      REQUIRE(static_cast<int>(widths.size()) > height / 8);
+      const auto third = static_cast<std::ptrdiff_t>(widths.size() / 3);
+      const double far = std::accumulate(widths.begin(), widths.begin() + third, 0.0) / double(third);
+      const double near = std::accumulate(widths.end() - third, widths.end(), 0.0) / double(third);
+      CHECK(near > 1.5);
+      CHECK(far == doctest::Approx(near).epsilon(0.1));
     }
 }
 

@@ -30,23 +30,19 @@ class Contraction {
         own_(own),
         edges_(std::move(graph.edges)),
         slots_(makeSlots(std::exchange(graph.first, {}), moments_of)),
-        queue_(edges_, [this](const DualEdge& e) { return costOf(e); }),
-        waits_(slots_.size(), false) {
+        queue_(edges_, [this](const DualEdge& e) { return costOf(e); }) {
     for (const DualEdge& e : edges_) {
       assert(e.face[0] < own_);
       ++slots_[e.face[0]].degree, ++slots_[e.face[1]].degree;
     }
-    std::fill(waits_.begin() + own_, waits_.end(), true);
   }
 
-  void run() {
-    while (queue_.prepareTop()) {
+  // Until `most` merges have been made, or none is left that stays in the part.
+  void run(std::uint32_t most) {
+    while (merges_ < most && queue_.prepareTop()) {
       const std::uint32_t id = queue_.top();
       const DualEdge& e = edges_[id];
-      // Nobody knows here what one that waits will be when it is joined: whoever is to join it waits, too. The cost of
-      // a hub may be out of date, so that its neighbours wait for nothing: later rounds make up for that.
-      if (waits_[e.face[0]] || waits_[e.face[1]]) {
-        waits_[e.face[0]] = waits_[e.face[1]] = true;
+      if (e.face[0] >= own_ || e.face[1] >= own_) {
         queue_.pop();
         continue;
       }
@@ -241,14 +237,14 @@ class Contraction {
 MergeTree contract(DualGraph graph, const MomentsOf& moments_of, const CostWeights& weights) {
   const auto count = static_cast<std::uint32_t>(graph.first.size());
   Contraction contraction(std::move(graph), count, moments_of, weights);
-  contraction.run();
+  contraction.run(count);
   return contraction.takeTree();
 }
 
-ContractedPart contractPart(DualGraph graph, std::uint32_t own, const MomentsOf& moments_of,
+ContractedPart contractPart(DualGraph graph, std::uint32_t own, std::uint32_t least, const MomentsOf& moments_of,
                             const CostWeights& weights) {
   Contraction contraction(std::move(graph), own, moments_of, weights);
-  contraction.run();
+  contraction.run(own - std::min(own, least));
   return contraction.takePart();
 }
 

@@ -46,12 +46,10 @@ struct ContractedPart {
   std::vector<Link> links;              ///< each pair at most once
 };
 
-/// Contracts a part of a larger dual graph in the same order, as far as that does not depend on other parts. Clusters
-/// [0, own) are the part; the others are its halo, their neighbours in other parts. When the cheapest edge leads to the
-/// halo, its cluster waits; and so does each whose own turn it is to join one that waits.
-/// graph       every edge has its face[0] in the part
-/// moments_of  of the halo, too
-ContractedPart contractPart(DualGraph graph, std::uint32_t own, const MomentsOf& moments_of,
+/// Contracts a part of a larger dual graph. Clusters [0, own) are the part; the others are its halo, their neighbours
+/// in other parts: no edge to them is contracted, but each counts as a neighbour. graph       every edge has its
+/// face[0] in the part least       stops when no more clusters of the part are left moments_of  of the halo, too
+ContractedPart contractPart(DualGraph graph, std::uint32_t own, std::uint32_t least, const MomentsOf& moments_of,
                             const CostWeights& weights);
 
 }  // namespace sheaf::grouping

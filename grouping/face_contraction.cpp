@@ -26,6 +26,10 @@ ClusterMoments momentsOf(const Mesh& mesh, const ModelFrame& frame, std::uint32_
   return m;
 }
 
+// A part is contracted to this share. Going on to an eighth is hardly faster, and clusters along borders, which have to
+// wait for the next round, then cost too much.
+constexpr std::uint32_t kPartShare = 4;
+
 // What became of a part, and where it goes in the whole.
 struct PartResult {
   ContractedPart rest;
@@ -93,7 +97,8 @@ class FaceContraction {
       PartGraph g = partGraph(graph_, parts, part);
       PartResult& r = results[part];
       r.rest = contractPart(
-          std::move(g.graph), g.own, [&](std::uint32_t i) { return momentsOfCluster(g.clusters[i]); }, weights_);
+          std::move(g.graph), g.own, g.own / kPartShare,
+          [&](std::uint32_t i) { return momentsOfCluster(g.clusters[i]); }, weights_);
       r.clusters = std::move(g.clusters);
       r.own = g.own;
     });
@@ -226,10 +231,10 @@ MergeTree contractFaces(const Mesh& mesh, const ModelFrame& frame, DualGraph gra
   assert(plan.part_size > 0);
   FaceContraction contraction(mesh, frame, std::move(graph), turned, weights, pool);
   const bool is_in_parts = contraction.clusterCount() > plan.most_at_once;
-  while (contraction.clusterCount() > plan.most_at_once) {
-    const std::size_t before = contraction.clusterCount();
+  for (std::size_t before = 0;
+       contraction.clusterCount() > plan.most_at_once && contraction.clusterCount() != before;) {
+    before = contraction.clusterCount();
     contraction.contractInParts(plan.part_size);
-    if (4 * contraction.clusterCount() > 3 * before) break;  // one part waits for the next: the rest is a chain
   }
   contraction.contractRest();
   MergeTree tree = contraction.takeTree();

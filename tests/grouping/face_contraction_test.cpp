@@ -2,8 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <numeric>
-#include <string_view>
 
 #include "grouping/face_clusters.h"
 #include "tests/grouping/assorted_meshes.h"
@@ -83,8 +83,8 @@ TEST_CASE("grouping/face_contraction: in parts, every merge joins neighbours and
       const Faces a = listOf(clusters.facesOf(clusters.children[i][0])),
                   b = listOf(clusters.facesOf(clusters.children[i][1]));
       CHECK(shareAnEdge(mesh, a, b));
-      if (std::string_view(name) != "bad faces")  // which have no plain costs
-        CHECK(clusters.cost[i] == doctest::Approx(plainCost(turned, around, a, b, frame, {})).epsilon(1e-4));
+      const double plain = plainCost(turned, around, a, b, frame, {});
+      if (std::isfinite(plain)) CHECK(clusters.cost[i] == doctest::Approx(plain).epsilon(1e-4));  // not without area
     }
   }
 }
@@ -122,14 +122,6 @@ TEST_CASE("grouping/face_contraction: pieces of the mesh that lie within parts c
     append(mesh, lumpyBall(rng, 6, 8, 0.05F), Vec3(3.0F * static_cast<float>(i), 0.0F, 0.0F));
   const auto faces = static_cast<std::uint32_t>(mesh.triangleCount());
   CHECK(clusterSets(contracted(mesh, inPartsOf(faces / kBalls * 2))) == clusterSets(contracted(mesh, {})));
-}
-
-TEST_CASE(
-    "grouping/face_contraction: where parts would wait for each other in a row, the rest is contracted as a whole") {
-  const mesh::Mesh mesh = bowl(60);
-  const FaceClusters clusters = contracted(mesh, inPartsOf(100));
-  CHECK(findBrokenMerge(clusters.faceCount(), clusters.children) == "");
-  CHECK(clusters.roots == contracted(mesh, {}).roots);
 }
 
 TEST_CASE("grouping/face_contraction: parts in which nothing can be joined leave it all to the end") {

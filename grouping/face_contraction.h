@@ -28,7 +28,7 @@ struct ContractionPlan {
 /// graph   buildDualGraph(mesh, frame)
 /// turned  #F or empty: faces whose normal counts the other way round
 ///
-/// O(F log F) time. At most 250 bytes per face, in parts about 130 and 2 MB per thread.
+/// O(F log F) time. At most 250 bytes per face, in parts of a large mesh about 150.
 MergeTree contractFaces(const mesh::Mesh& mesh, const ModelFrame& frame, DualGraph graph,
                         const std::vector<bool>& turned, const CostWeights& weights, TaskPool& pool,
                         const ContractionPlan& plan = {});

@@ -200,12 +200,13 @@ std::string writeClustering(Context& context) {
          "with a weight of 0.1. The bunny with other weights; planarity is the RMS distance of corners to the plane of "
          "their cluster, of the longest edge of the box:\n\n" +
          balanceTable(context) +
-         "Large meshes are contracted in parts of 8192 clusters, as far as these do not depend on each other, and what "
+         "Large meshes are contracted in parts of 8192 clusters, each to a quarter, and what "
          "is left in parts again, cut along other lines. So a part stays in a core's cache, and threads share parts "
          "out; the result does not depend on their number. Against a contraction in which every merge is the cheapest "
          "of all, and what both make of a mesh *shaken*: each vertex moved by up to a millionth of the longest edge of "
-         "the box. Parts cost about as much quality as shaking changes; most is lost on the dragon in 1000 clusters, "
-         "which are 5 to 15 % less flat:\n\n" +
+         "the box. In parts a merge costs up to 0.002 more or less on the mean; flatness and depth differ about as "
+         "much "
+         "as by shaking:\n\n" +
          partsTable(context) + pictures(context);
 }
 
